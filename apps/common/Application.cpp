@@ -3,16 +3,129 @@
 #include <strict_files/Words.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
+#include <regex>
+#include <utility>
 
-#include "CommandLine.h"
 #include "Signals.h"
 #include "StandardOutput.h"
+
+namespace {
+
+bool isGroup(const CLI::App& app) { return app.get_name().empty(); }
+
+/** Negative numbers are values. */
+bool isOption(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && !std::isdigit(static_cast<unsigned char>(word[1])) &&
+         word[1] != '.';
+}
+
+std::vector<std::string> namesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : optionsOf(app)) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> commandsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    if (!isGroup(*command)) names.push_back(command->get_name());
+  return names;
+}
+
+/** Names an argument that was left over; empty if there is none. */
+std::string unexpected(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining(true);
+  const std::vector<std::string> commands = commandsOf(app), known = namesOf(app);
+  for (const std::string& word : words) {
+    if (!isOption(word)) continue;
+    const std::string name = word.substr(0, word.find('='));
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      return name + " belongs behind the command";
+    const bool meansOrder =
+        name == "--classes" && std::find(known.begin(), known.end(), "--order") != known.end();
+    return "unknown option '" + name + "'" +
+           (meansOrder ? "; an order of classes is --order"
+                       : strict_files::didYouMean(name, known));
+  }
+  if (words.empty()) return "";
+  if (!commands.empty() && app.get_subcommands().empty())
+    return strict_files::unknownWord("command", words.front(), commands);
+  const bool writes = app.get_option_no_throw("--output") || !app.get_subcommands().empty();
+  return "one argument too many: '" + words.front() + "'" +
+         (writes ? " (what is written is named by -o)" : "");
+}
+
+/** "NUMBER", "{one,other}", "1 to 8", whatever CLI11 calls it. Texts are names of files, where
+ * options do not say something else. */
+std::string readableType(const std::string& type) {
+  static const std::regex theirs("(INT|UINT|FLOAT|TEXT|ENUM|BOOLEAN)(:(.*))?");
+  std::smatch parts;
+  if (!std::regex_match(type, parts, theirs)) return type;
+  if (parts[3].length() > 0) return parts[3];
+  return parts[1] == "TEXT" ? "FILE" : "NUMBER";
+}
+
+/** What CLI11 says, in the words of our own messages. */
+std::string readableMessage(const std::string& message) {
+  static const std::pair<std::regex, std::string> ours[] = {
+      {std::regex("^(--?[a-z-]+): \\1:"), "$1:"},
+      {std::regex("^(--?[a-z-]+): (is )"), "$1 $2"},
+      {std::regex(": 1 required .* missing$"), " lacks its value"},
+      {std::regex(": ([0-9]+) required .* missing$"), " needs $1 values"},
+      {std::regex(": At Most 1 required but received ([0-9]+)$"), " is given $1 times"},
+      {std::regex("^A subcommand is required$"), "a command is missing"}};
+  std::string text = message;
+  for (const auto& [theirs, words] : ours)
+    text = std::regex_replace(text, theirs, words, std::regex_constants::format_first_only);
+  return text;
+}
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool positional) const override {
+    const std::string name = Formatter::make_option_name(option, positional);
+    return std::regex_replace(name, std::regex(R"(\{[^}]*\})"), "");
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string type = option->get_type_name(),
+                      readable = option->get_positional() ? "" : readableType(type);
+    std::string text = Formatter::make_option_opts(option);
+    const std::size_t at = type.empty() ? std::string::npos : text.find(type);
+    return at == std::string::npos ? text : text.replace(at, type.size(), readable);
+  }
+};
+
+}  // namespace
+
+std::vector<const CLI::Option*> optionsOf(const CLI::App& app) {
+  std::vector<const CLI::Option*> all = app.get_options();
+  for (const CLI::App* part : app.get_subcommands(nullptr))
+    if (isGroup(*part) || part->parsed()) {
+      const auto more = optionsOf(*part);
+      all.insert(all.end(), more.begin(), more.end());
+    }
+  return all;
+}
+
+std::string problemOf(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string surplus = unexpected(app);
+  return surplus.empty() ? readableMessage(error.what()) : surplus;
+}
+
+void makeHelpReadable(CLI::App& app) {
+  app.formatter(std::make_shared<HelpFormatter>());
+  for (CLI::App* part : app.get_subcommands(nullptr)) makeHelpReadable(*part);
+}
 
 namespace {
 

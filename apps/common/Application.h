@@ -1,6 +1,19 @@
 #pragma once
 #include <CLI/CLI.hpp>
+
 #include <functional>
+#include <string>
+#include <vector>
+
+/** All options, those of groups and of the subcommands that were given, too. */
+std::vector<const CLI::Option*> optionsOf(const CLI::App& app);
+
+/** What is wrong with the command line. Unknown options and commands come first, with the one that
+ * was meant. */
+std::string problemOf(const CLI::App& app, const CLI::ParseError& error);
+
+/** Help in words: CLI11's names of types and checks are for programmers. */
+void makeHelpReadable(CLI::App& app);
 
 /** The `main` of all applications: reads the command line, which knows --version, too, and runs. An
  * exception becomes a line on the standard error output. SIGINT, SIGTERM and SIGHUP end the program

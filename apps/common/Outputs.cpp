@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "CommandLine.h"
+#include "Application.h"
 #include "StandardOutput.h"
 
 namespace fs = std::filesystem;

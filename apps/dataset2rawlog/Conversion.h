@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "Progress.h"
 #include "Signals.h"
+#include "StandardOutput.h"
 #include "label_noise/LabelNoise.h"
 
 namespace dataset2rawlog {

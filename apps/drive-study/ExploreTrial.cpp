@@ -8,7 +8,7 @@
 #include <limits>
 #include <sstream>
 
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 #include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {

@@ -1,5 +1,4 @@
 #pragma once
-#include <semantic_driving/ViewStrategy.h>
 #include <synthetic_world/Scene.h>
 #include <tree_abstraction/AbstractionWeights.h>
 

@@ -10,8 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "measuring/Quantile.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 #include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {

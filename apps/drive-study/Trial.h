@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "simulated_drive/DriveFiles.h"
 #include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {

@@ -10,10 +10,8 @@
 #include <ostream>
 
 #include "Application.h"
-#include "Choice.h"
 #include "ExploreTrial.h"
-#include "NumberChecks.h"
-#include "OptionFlags.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "Signals.h"
 #include "StandardOutput.h"
@@ -44,9 +42,8 @@ struct Cli {
              synthetic_world::sceneNames())
         ->delimiter(',')
         ->default_str("all");
-    app.add_option("--pairs", pairs, "Drives in each world, from a random start to a random goal")
-        ->check(isNumber(strict_files::atLeast(0)))
-        ->capture_default_str();
+    addNumber(app, "--pairs", pairs, strict_files::atLeast(0),
+              "Drives in each world, from a random start to a random goal");
     app.add_option("--only", only, "Numbers of the drives to do (0, 1, ...); without: all")
         ->delimiter(',');
     CLI::Option* exploring =

@@ -15,11 +15,9 @@
 #include <stdexcept>
 
 #include "Application.h"
-#include "Choice.h"
-#include "NumberChecks.h"
+#include "Options.h"
 #include "Runner.h"
-#include "measuring/Quantile.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 
 namespace insertion_benchmark {
 namespace {
@@ -51,31 +49,24 @@ struct Cli {
   explicit Cli(CLI::App& app) {
     app.add_option("RAWLOG", rawlog, "Rawlog with labels and poses of the robot")->required();
     app.add_option("--classes", classes, "Class table (YAML)")->required();
-    addNumber(app, "--resolution", settings.resolution, "Edge of a voxel, m",
-              strict_files::above(0));
-    addNumber(app, "--range", settings.maxRange, "Maximum range, m; 0: none",
-              strict_files::atLeast(0));
+    addNumber(app, "--resolution", settings.resolution, strict_files::above(0),
+              "Edge of a voxel, m");
+    addNumber(app, "--range", settings.maxRange, strict_files::atLeast(0),
+              "Maximum range, m; 0: none");
     app.add_option("--scans", scans, "Number of scans; 0: all")->capture_default_str();
     addChoice(app.add_option("--rays", settings.rays,
                              "Our rays: all, or one for each end voxel (endpoints)"),
               std::map<std::string, InsertionOptions::Rays>{
                   {"all", InsertionOptions::Rays::All},
                   {"endpoints", InsertionOptions::Rays::EndVoxels}});
-    addNumber(app, "--terms", settings.terms, "Information terms to keep up to date",
-              strict_files::between(1, 8));
-    addNumber(app, "--threads", settings.threads, "Our threads", strict_files::between(1, 256));
-    addNumber(app, "--repeats", repeats, "Measurements of each runner",
-              strict_files::between(1, 1000));
+    addNumber(app, "--terms", settings.terms, strict_files::between(1, 8),
+              "Information terms to keep up to date");
+    addNumber(app, "--threads", settings.threads, strict_files::between(1, 256), "Our threads");
+    addNumber(app, "--repeats", repeats, strict_files::between(1, 1000),
+              "Measurements of each runner");
     app.add_option("--only", only,
                    "Measure only runners whose names contain this, and the bare traversal")
         ->type_name("TEXT");
-  }
-
- private:
-  template <class Number>
-  static void addNumber(CLI::App& app, const char* name, Number& number, const char* help,
-                        const strict_files::Range& range) {
-    app.add_option(name, number, help)->check(isNumber(range))->capture_default_str();
   }
 };
 

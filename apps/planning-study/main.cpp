@@ -12,10 +12,10 @@
 #include <stdexcept>
 
 #include "Application.h"
-#include "NumberChecks.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "Signals.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 
 namespace planning_study {
 namespace {
@@ -44,18 +44,11 @@ struct Cli {
     app.add_option("--solution", solution, "Which of the weights; none: the first")
         ->type_name("NAME");
     outputs.add(app, output, "FILE", "Table of all searches (CSV)")->required();
-    addNumber(app, "--instances", instances, "Pairs of start and goal");
-    addNumber(app, "--vertices", vertices, "Of each graph; of halton, draws");
-    addNumber(app, "--min-distance", minDistance, "From start to goal, m");
+    addNumber(app, "--instances", instances, strict_files::above(0), "Pairs of start and goal");
+    addNumber(app, "--vertices", vertices, strict_files::above(0),
+              "Of each graph; of halton, draws");
+    addNumber(app, "--min-distance", minDistance, strict_files::above(0), "From start to goal, m");
     app.add_option("--seed", seed, "Other instances")->capture_default_str();
-  }
-
- private:
-  template <class Number>
-  static void addNumber(CLI::App& app, const char* name, Number& number, const char* help) {
-    app.add_option(name, number, help)
-        ->check(isNumber(strict_files::above(0)))
-        ->capture_default_str();
   }
 };
 

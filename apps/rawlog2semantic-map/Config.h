@@ -2,7 +2,6 @@
 #include <labeled_cloud/CloudLabeler.h>
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/ScanStream.h>
-#include <labeled_cloud/Trajectory.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_slam/SlamOptions.h>

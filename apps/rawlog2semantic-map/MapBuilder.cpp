@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
@@ -19,64 +18,9 @@
 
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 
 namespace rawlog2semantic_map {
-namespace {
-
-/** Says on the standard output how far a task is: a bar on a terminal, a line now and then
- * elsewhere. */
-class Progress {
- public:
-  /** \param task what is done, "Reading poses" \param total of what update() gets */
-  Progress(std::string task, std::uint64_t total);
-
-  /** \param note short, "12 scans" */
-  void update(std::uint64_t done, const std::string& note);
-  /** Says that the task is complete. */
-  void finish(const std::string& note);
-
- private:
-  void drawBar(double share, const std::string& note);
-
-  std::string m_task;
-  std::uint64_t m_total;
-  bool m_onTerminal;
-  measuring::Stopwatch m_sinceSaid;
-};
-
-constexpr double kBetweenBars = 100, kBetweenLines = 5000;  // ms
-constexpr int kBarWidth = 30;
-
-Progress::Progress(std::string task, std::uint64_t total)
-    : m_task(std::move(task)),
-      m_total(std::max<std::uint64_t>(total, 1)),
-      m_onTerminal(isatty(STDOUT_FILENO)) {}
-
-void Progress::update(std::uint64_t done, const std::string& note) {
-  if (m_sinceSaid.milliseconds() < (m_onTerminal ? kBetweenBars : kBetweenLines)) return;
-  m_sinceSaid.lap();
-  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(m_total));
-  if (m_onTerminal)
-    drawBar(share, note);
-  else
-    notes() << m_task << ": " << static_cast<int>(100 * share) << " %, " << note << std::endl;
-}
-
-void Progress::drawBar(double share, const std::string& note) {
-  const int full = static_cast<int>(share * kBarWidth);
-  replaceLine();
-  notes() << m_task << " [" << std::string(full, '#') << std::string(kBarWidth - full, '.') << "] "
-          << static_cast<int>(100 * share) << " % " << note << std::flush;
-}
-
-void Progress::finish(const std::string& note) {
-  replaceLine();
-  notes() << m_task << ": " << note << std::endl;
-}
-
-}  // namespace
-
 namespace fs = std::filesystem;
 using labeled_cloud::LabeledScan;
 using labeled_cloud::StreamedObservation;

@@ -5,6 +5,7 @@
 #include <labeled_cloud/Pictures.h>
 #include <labeled_cloud/Trajectory.h>
 #include <map_pictures/MapPictures.h>
+#include <mrpt/core/format.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt_compat/Drawing.h>
 #include <opencv2/imgproc.hpp>
@@ -72,11 +73,7 @@ Preview::Preview(const std::filesystem::path& folder, const ClassTable& classes)
   if (error) throw std::runtime_error(folder.string() + ": cannot be created: " + error.message());
 }
 
-std::string Preview::nameOf(std::size_t i) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06zu.png", i);
-  return name;
-}
+std::string Preview::nameOf(std::size_t i) { return mrpt::format("%06zu.png", i); }
 
 void Preview::write(const LabeledScan& scan) {
   if (scan.pictures.empty()) return;
@@ -108,16 +105,10 @@ mrpt_compat::drawing::CPointCloud::Ptr pointsOf(semantic_types::ClassId id,
   return points;
 }
 
-std::string text(const char* format, double number) {
-  char line[80];
-  std::snprintf(line, sizeof line, format, number);
-  return line;
-}
-
 /** The time that the compressed tree took, if it is kept. */
 std::string changeTime(const Summary& summary) {
   const auto& times = summary.abstraction.changeTimes;
-  return times.empty() ? std::string() : text(", tree %.1f", times.back());
+  return times.empty() ? std::string() : mrpt::format(", tree %.1f", times.back());
 }
 
 std::vector<std::string> lines(const LabeledScan& scan, const Summary& summary,
@@ -125,8 +116,8 @@ std::vector<std::string> lines(const LabeledScan& scan, const Summary& summary,
   return {std::to_string(summary.insertionTimes.size()) + " scans, " + scan.sensorLabel,
           std::to_string(scan.counts.points) + " points, " + std::to_string(scan.counts.labeled) +
               " with a class",
-          text("ms: made %.1f,", summary.conversionTimes.back()) +
-              text(" inserted %.1f", summary.insertionTimes.back()) + changeTime(summary),
+          mrpt::format("ms: made %.1f,", summary.conversionTimes.back()) +
+              mrpt::format(" inserted %.1f", summary.insertionTimes.back()) + changeTime(summary),
           std::to_string(map.getNumLeafNodes()) + " leaves"};
 }
 

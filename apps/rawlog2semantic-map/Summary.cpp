@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "measuring/Quantile.h"
+#include "measuring/Measuring.h"
 
 namespace rawlog2semantic_map {
 

@@ -8,7 +8,6 @@
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
-#include <cmath>
 #include <optional>
 #include <ostream>
 
@@ -16,8 +15,7 @@
 #include "Config.h"
 #include "JsonFile.h"
 #include "MapBuilder.h"
-#include "NumberChecks.h"
-#include "OptionFlags.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "ScanOutputs.h"
 #include "Signals.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 
 namespace semantic_map_compress {
 

@@ -1,5 +1,6 @@
 #include "Report.h"
 
+#include <mrpt/core/format.h>
 #include <strict_files/TextFile.h>
 #include <tree_abstraction/Information.h>
 
@@ -104,10 +105,11 @@ void plotLeafRatios(std::ostream& out, const std::vector<Compression>& compressi
   for (std::size_t s = 0; s < compressions.size(); ++s) {
     const double percent = 100 * compressions[s].leafRatio();
     highest = std::max(highest, percent);
-    char label[80];
-    std::snprintf(label, sizeof label, "%.3g %%  (%zu)", percent,
-                  compressions[s].measures.compressed.numKnownLeaves);
-    out << "$leaves" << s << " << EOD\n" << s << ' ' << percent << " \"" << label << "\"\nEOD\n";
+    out << "$leaves" << s << " << EOD\n"
+        << s << ' ' << percent << " \""
+        << mrpt::format("%.3g %%  (%zu)", percent,
+                        compressions[s].measures.compressed.numKnownLeaves)
+        << "\"\nEOD\n";
   }
   out << "set yrange [0:" << std::max(1e-3, 1.3 * highest) << "]\nplot ";
   for (std::size_t s = 0; s < compressions.size(); ++s)

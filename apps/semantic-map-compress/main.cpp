@@ -13,10 +13,8 @@
 
 #include "Application.h"
 #include "JsonFile.h"
-#include "MemoryOption.h"
-#include "NumberChecks.h"
+#include "Options.h"
 #include "Outputs.h"
-#include "Progress.h"
 #include "Report.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"

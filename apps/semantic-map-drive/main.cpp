@@ -1,6 +1,7 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
 #include <map_folders/MapFolder.h>
 #include <map_pictures/PictureFiles.h>
+#include <mrpt/core/format.h>
 #include <mrpt/math/TPose2D.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_octree/TreeFile.h>
@@ -20,18 +21,14 @@
 #include <vector>
 
 #include "Application.h"
-#include "Choice.h"
-#include "DrivePicture.h"
+#include "DriveViews.h"
 #include "JsonFile.h"
-#include "LiveWindow.h"
-#include "MemoryOption.h"
-#include "NumberChecks.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "Signals.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"
 #include "poses/Poses.h"
-#include "simulated_drive/DriveFiles.h"
 #include "simulated_drive/DriveLoop.h"
 #include "simulated_drive/Events.h"
 #include "synthetic_rawlog/Observations.h"
@@ -87,9 +84,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
            synthetic_world::sceneNames())
       ->capture_default_str();
   app.add_option("--seed", seed, "Seed of the world and of all noise")->capture_default_str();
-  app.add_option("--hills", hills, "Factor of the ground's heights; 0 is flat")
-      ->check(isNumber(strict_files::between(0.0, 2.0)))
-      ->capture_default_str();
+  addNumber(app, "--hills", hills, strict_files::between(0.0, 2.0),
+            "Factor of the ground's heights; 0 is flat");
   app.add_option("--map", map,
                  std::string("Map that the robot begins with, which stays as it is (") +
                      inputs::kMap + "); without: none");
@@ -291,9 +287,7 @@ class DriveProgram {
 
   /** drive-0000.png, drive-0001.png, ... */
   static std::string numbered(const std::string& name, std::size_t i) {
-    const std::string digits = std::to_string(i);
-    return name + "-" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits +
-           ".png";
+    return name + mrpt::format("-%04zu.png", i);
   }
 
   /** Pictures of this drive; and those of an earlier, longer one, which go. */

@@ -5,7 +5,6 @@
 #include <semantic_map/MapFiles.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_types/ClassTable.h>
-#include <strict_files/Words.h>
 
 #include <array>
 #include <cmath>
@@ -14,8 +13,7 @@
 #include <ostream>
 
 #include "Application.h"
-#include "MemoryOption.h"
-#include "NumberChecks.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"

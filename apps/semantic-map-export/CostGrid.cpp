@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 

@@ -1,7 +1,6 @@
 #pragma once
 #include <colored_graph/ClassOrder.h>
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_planning/ground/GroundOptions.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
 
 #include <cstdint>

@@ -19,10 +19,8 @@
 #include <string>
 
 #include "Application.h"
-#include "Choice.h"
 #include "CostGrid.h"
-#include "MemoryOption.h"
-#include "OptionFlags.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"
@@ -95,8 +93,6 @@ class Exporter {
   ExportOptions m_options;
   std::list<Staged> m_staged;
 };
-
-namespace fs = std::filesystem;
 
 struct Exporter::Format {
   const char* ending;

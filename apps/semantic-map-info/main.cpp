@@ -14,7 +14,7 @@
 
 #include "Application.h"
 #include "JsonFile.h"
-#include "MemoryOption.h"
+#include "Options.h"
 #include "PointQuery.h"
 #include "inputs/Inputs.h"
 

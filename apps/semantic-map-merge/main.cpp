@@ -14,7 +14,7 @@
 
 #include "Application.h"
 #include "MapPoses.h"
-#include "MemoryOption.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"

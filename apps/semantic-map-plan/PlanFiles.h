@@ -1,14 +1,31 @@
 #pragma once
+#include <colored_graph/ClassOrder.h>
+#include <map_pictures/MapCanvas.h>
 #include <semantic_planning/planner/PlanResult.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_planning/roadmap/Roadmap.h>
 #include <semantic_types/ClassTable.h>
-
-#include <colored_graph/ClassOrder.h>
-#include <filesystem>
 #include <nlohmann/json.hpp>
+
+#include <filesystem>
 #include <string>
 
 namespace semantic_map_plan {
+
+/** Writes a scene for MRPT's SceneViewer3D: the map, the roadmap's vertices, and the path.
+ * \param map null: it is left out, as one that may be larger than memory has to be
+ * \throw std::runtime_error naming the file. */
+void saveScene(const semantic_octree::SemanticOcTree* map,
+               const semantic_planning::SemanticPlanner& planner,
+               const semantic_planning::PlanResult& plan, const std::filesystem::path& file);
+
+/** Draws upon the map from above the drivable ground in its classes' colors and the holes in it,
+ * the graph's vertices and its edges (light: not evaluated; blocked ones are left out), start and
+ * goal as arrows with the footprint, the path if there is one, what is in the way of a start or
+ * goal that is refused, and a legend of all that. */
+cv::Mat drawPlan(map_pictures::MapCanvas canvas, const semantic_planning::SemanticPlanner& planner,
+                 const semantic_planning::PlanResult& plan, const mrpt::math::TPose2D& start,
+                 const mrpt::math::TPose2D& goal);
 
 /** Name of a ground's class. */
 std::string groundName(semantic_types::ClassId id, const semantic_types::ClassTable& classes);

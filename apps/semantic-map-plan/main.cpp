@@ -3,37 +3,81 @@
 #include <map_pictures/MapCanvas.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
+#include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "Application.h"
-#include "Cli.h"
 #include "JsonFile.h"
+#include "Options.h"
+#include "Outputs.h"
 #include "PlanFiles.h"
-#include "PlanPicture.h"
-#include "PlanScene.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
+#include "poses/Poses.h"
 
 namespace semantic_map_plan {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace semantic_planning;
 using map_pictures::MapCanvas;
-using semantic_octree::AbstractionOptions;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
+
+/** What the command line says. */
+struct Cli {
+  std::filesystem::path map, order, vehicle, weights, output;
+  double memory = semantic_octree::MapFolderOptions().memory;
+  std::string solution;
+  mrpt::math::TPose2D start, goal;
+  std::optional<double> startZ, goalZ;
+  std::optional<double> corridor;  ///< meters to each side; none: said nothing
+  /** All but the vehicle. */
+  semantic_planning::PlannerOptions planner;
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app);
+};
+
+Cli::Cli(CLI::App& app) : outputs(app) {
+  inputs::addMap(app, map);
+  addMemoryOption(app, memory);
+  poses::addPose(app, "--start", start, "Where the vehicle is")->required();
+  poses::addPose(app, "--goal", goal, "Where the vehicle shall go")->required();
+  app.add_option("--start-z", startZ, "Height, where the ground has several levels, m");
+  app.add_option("--goal-z", goalZ, "Height of the goal, m");
+  app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
+  app.add_option("--vehicle", vehicle, "The vehicle (YAML); without: a small robot");
+  app.add_option("--weights", weights,
+                 "Weights of classes for the compressed tree (YAML, as for semantic-map-compress); "
+                 "without: what tells the ranks of --order apart");
+  app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
+      ->type_name("NAME")
+      ->needs("--weights");
+  app.add_option("--corridor", corridor,
+                 "Distance from a coarse way within which ground is looked at, m; inf: all ground. "
+                 "Without: 30 for folders of tiles, inf for other maps")
+      ->check(isNumber(strict_files::above(0).orInfinite()));
+  outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
+  planner.shorten = true;
+  strict_files::OptionList options;
+  planner.describe(options);
+  addOptions(app, options, "Planner");
+}
 
 constexpr int kNoPath = 2;  // exit status
 const std::vector<std::string> kFiles = {"path.json", "path.csv", "plan.png", "plan.3Dscene",
@@ -126,6 +170,7 @@ int run(Cli& cli) {
 }
 
 }  // namespace
+
 }  // namespace semantic_map_plan
 
 int main(int argc, char** argv) {

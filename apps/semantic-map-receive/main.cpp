@@ -8,14 +8,12 @@
 #include <ostream>
 
 #include "Application.h"
-#include "NumberChecks.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "Signals.h"
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"
-#include "radio/Seal.h"
-#include "radio/UdpSocket.h"
-#include "radio/Wish.h"
+#include "radio/Radio.h"
 
 namespace semantic_map_receive {
 namespace {
@@ -195,13 +193,10 @@ struct Cli {
         "--key", key,
         "Listen only to a sender with this key: a file of 16 bytes or more, the same on both "
         "sides");
-    app.add_option("--timeout", reception.timeout, "End when the sender is silent for this long, s")
-        ->check(isNumber(strict_files::above(0)))
-        ->capture_default_str();
-    app.add_option("--lose", reception.loss,
-                   "Try a bad radio: lose this share of what goes to the sender")
-        ->check(isNumber(strict_files::between(0, 0.99)))
-        ->capture_default_str();
+    addNumber(app, "--timeout", reception.timeout, strict_files::above(0),
+              "End when the sender is silent for this long, s");
+    addNumber(app, "--lose", reception.loss, strict_files::between(0, 0.99),
+              "Try a bad radio: lose this share of what goes to the sender");
     app.add_option("--seed", reception.seed, "Seed of the losses")->capture_default_str();
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of foreign datagrams");
   }

@@ -9,7 +9,7 @@
 #include <ostream>
 
 #include "StandardOutput.h"
-#include "measuring/Quantile.h"
+#include "measuring/Measuring.h"
 
 namespace semantic_map_ros2 {
 

@@ -1,9 +1,11 @@
 #pragma once
 #include <map_view/LiveCompression.h>
 
+#include <array>
 #include <optional>
 
 #include "map_window/Viewer.h"
+#include "map_window/Widgets.h"
 
 namespace semantic_map_view {
 
@@ -72,6 +74,31 @@ class CompressPanel {
   std::function<void()> m_onFollowed = [] {};
   std::string m_told;
   double m_measureAt = 0;  ///< s of GLFW's clock; 0: measured
+};
+
+/** Why the compressed tree expands the cell that was clicked and its ancestors, or does not: what
+ * each G-value is made of. */
+class WhyPanel {
+ public:
+  WhyPanel(Viewer& viewer, CompressPanel& compress);
+  WhyPanel(const WhyPanel&) = delete;
+  WhyPanel& operator=(const WhyPanel&) = delete;
+
+  /** \param cell none: nothing was clicked */
+  void show(const std::optional<map_view::ViewCell>& cell);
+
+  /** More have no place. */
+  static constexpr std::size_t kMostNodes = 4, kMostTerms = 6;
+
+ private:
+  void update();
+
+  Viewer& m_viewer;
+  const CompressPanel& m_compress;
+  Panel* m_panel;
+  std::array<std::array<nanogui::Label*, kMostNodes + 1>, kMostTerms + 6> m_cells{};
+  std::optional<map_view::ViewCell> m_cell;
+  std::string m_told;
 };
 
 }  // namespace semantic_map_view

@@ -1,6 +1,7 @@
 #include "PlanPanel.h"
 
 #include <map_view/OrbitCamera.h>
+#include <mrpt/core/format.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
@@ -11,9 +12,9 @@
 #include <utility>
 
 #include "StandardOutput.h"
-#include "TrackScene.h"
+#include "Track.h"
 #include "map_window/Widgets.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 
 namespace semantic_map_view {
 
@@ -239,12 +240,11 @@ void PlanPanel::turn(const map_view::Ray& ray, bool letsGo) {
   if (way.norm() > kTurn) pose.heading = std::atan2(way.y(), way.x());
   draw(nullptr);
   if (!letsGo) return;
-  char text[60], heading[30] = "";
-  std::snprintf(text, sizeof text, "%s at %.1f %.1f %.1f m",
-                m_awaited == Awaited::Start ? "start" : "goal", pose.place.x(), pose.place.y(),
-                pose.place.z());
-  if (pose.heading)
-    std::snprintf(heading, sizeof heading, "heading %.0f deg", *pose.heading * 180 / M_PI);
+  const std::string what = m_awaited == Awaited::Start ? "start" : "goal";
+  const auto& p = pose.place;
+  const std::string text = what + mrpt::format(" at %.1f %.1f %.1f m", p.x(), p.y(), p.z());
+  std::string heading;
+  if (pose.heading) heading = mrpt::format("heading %.0f deg", *pose.heading * 180 / M_PI);
   m_awaited = Awaited::Nothing;
   say(text, heading);
   if (m_start && m_goal) plan();
@@ -273,10 +273,7 @@ void PlanPanel::plan() {
         m_planner->plan(poseOf(*m_start), poseOf(*m_goal), m_start->place.z(), m_goal->place.z());
     draw(&plan);
     if (!plan.found()) return say("no path:", plan.reason);
-    char text[60];
-    std::snprintf(text, sizeof text, "path of %.1f m, in %.1f s", plan.length,
-                  watch.milliseconds() / 1000);
-    say(text);
+    say(mrpt::format("path of %.1f m, in %.1f s", plan.length, watch.milliseconds() / 1000));
   } catch (const std::exception& e) {
     say("no path:", e.what());
   }

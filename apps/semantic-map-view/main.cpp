@@ -11,15 +11,11 @@
 #include <vector>
 
 #include "Application.h"
-#include "Choice.h"
 #include "CompressPanel.h"
 #include "FilesPanel.h"
-#include "MemoryOption.h"
-#include "NumberChecks.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "PlanPanel.h"
-#include "WhyPanel.h"
-#include "map_window/AskPanel.h"
 #include "map_window/ShowPanel.h"
 #include "map_window/Viewer.h"
 

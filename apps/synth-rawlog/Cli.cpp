@@ -2,8 +2,7 @@
 
 #include <synthetic_world/Scene.h>
 
-#include "Choice.h"
-#include "NumberChecks.h"
+#include "Options.h"
 
 namespace synth_rawlog {
 namespace {
@@ -15,30 +14,22 @@ void addScene(CLI::App& app, Cli& cli) {
   addWords(app.add_option("--scene", cli.scene, "Which world"), synthetic_world::sceneNames())
       ->capture_default_str();
   app.add_option("--seed", cli.seed, "Seed of the world and of all noise")->capture_default_str();
-  app.add_option("--hills", cli.hills, "Factor of the ground's heights; 0 is flat")
-      ->check(isNumber(strict_files::between(0.0, 2.0)))
-      ->capture_default_str();
+  addNumber(app, "--hills", cli.hills, strict_files::between(0.0, 2.0),
+            "Factor of the ground's heights; 0 is flat");
 }
 
 void addDrive(CLI::App& app, Cli& cli) {
   app.add_option("--frames", cli.frames, "Number of frames; by default one round of the route")
       ->check(isNumber(strict_files::between(1, 1000000)));
-  app.add_option("--rate", cli.rate, "Frames a second")
-      ->check(isNumber(strict_files::above(0)))
-      ->capture_default_str();
-  app.add_option("--speed", cli.speed, "Speed of the robot, m/s")
-      ->check(isNumber(strict_files::above(0)))
-      ->capture_default_str();
+  addNumber(app, "--rate", cli.rate, strict_files::above(0), "Frames a second");
+  addNumber(app, "--speed", cli.speed, strict_files::above(0), "Speed of the robot, m/s");
   app.add_option("--start", cli.start, "Where on the route to begin, m")->capture_default_str();
-  app.add_option("--people", cli.people, "People who walk to and fro across the route")
-      ->check(isNumber(strict_files::between(0, 1000)))
-      ->capture_default_str();
+  addNumber(app, "--people", cli.people, strict_files::between(0, 1000),
+            "People who walk to and fro across the route");
   app.add_flag("--odometry", cli.odometry,
                "Write movements and sensory frames instead of observations with true poses");
-  app.add_option("--odometry-noise", cli.odometryNoise,
-                 "Noise of movements, standard deviation as a share of a movement")
-      ->check(isNumber(strict_files::between(0.0, 1.0)))
-      ->capture_default_str();
+  addNumber(app, "--odometry-noise", cli.odometryNoise, strict_files::between(0.0, 1.0),
+            "Noise of movements, standard deviation as a share of a movement");
 }
 
 void addSensors(CLI::App& app, Cli& cli) {
@@ -52,9 +43,8 @@ void addSensors(CLI::App& app, Cli& cli) {
   app.add_option("--fov", cli.camera.horizontalFov,
                  "Horizontal field of view of the camera, degrees")
       ->capture_default_str();
-  app.add_option("--camera-pitch", cli.cameraPitch, "How far the camera looks down, degrees")
-      ->check(isNumber(strict_files::between(-80.0, 80.0)))
-      ->capture_default_str();
+  addNumber(app, "--camera-pitch", cli.cameraPitch, strict_files::between(-80.0, 80.0),
+            "How far the camera looks down, degrees");
   app.add_option("--camera-range", cli.camera.maxRange, "Largest depth of the camera, m")
       ->capture_default_str();
   app.add_option("--rings", cli.lidar.rings, "Rings of the LiDAR")->capture_default_str();
@@ -83,9 +73,8 @@ void addTruth(CLI::App& app, Cli& cli) {
   app.add_option("--truth-query", cli.truthQuery,
                  "Print what is at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
-  app.add_option("--tolerance", cli.tolerance, "What is this near to a surface is on it, m")
-      ->check(isNumber(strict_files::atLeast(0)))
-      ->capture_default_str();
+  addNumber(app, "--tolerance", cli.tolerance, strict_files::atLeast(0),
+            "What is this near to a surface is on it, m");
   cli.outputs.addOther(app.add_option("--picture", cli.picture,
                                       "Write the world from above, colors and classes (PNG)"));
 }

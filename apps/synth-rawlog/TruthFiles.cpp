@@ -4,7 +4,6 @@
 #include <strict_files/StrictYaml.h>
 #include <strict_files/Words.h>
 
-#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>

@@ -2,7 +2,6 @@
 #include <mrpt/poses/CPose3D.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
-#include <synthetic_world/Scene.h>
 #include <synthetic_world/Sensors.h>
 #include <synthetic_world/Solids.h>
 

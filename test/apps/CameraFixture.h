@@ -47,8 +47,8 @@ class CameraMapping : public Rawlog2SemanticMap {
     cv::imwrite((folder / "labels/10.01.png").string(), redAndBlue());
   }
 
-  std::vector<std::string> labels() const { return {"--labels", (folder / "labels").string()}; }
-  std::vector<std::string> network() const {
+  Words labels() const { return {"--labels", (folder / "labels").string()}; }
+  Words network() const {
     const auto table = semantic_types::loadClassTable(folder / "classes.yaml");
     folder.write("net.yaml", nearestColorConfig(40, 40, table));
     return {"--network", saveNearestColorNetwork(folder / "net.onnx", 40, 40, table).string(),

@@ -9,11 +9,10 @@
 #include <thread>
 
 #include "JsonFile.h"
-#include "ShellCommand.h"
+#include "RunProgram.h"
 #include "TemporaryFolder.h"
 #include "figures/FigureScript.h"
-#include "measuring/Quantile.h"
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 #include "poses/Poses.h"
 
 using measuring::quantile;
@@ -123,7 +122,7 @@ std::string inSvg(const std::string& text) {
 }
 
 /** Draws in a folder of its own, which the test is in for that time. */
-class FigureTexts : public testing::Test {
+class FigureTexts : public FolderTest {
  protected:
   void SetUp() override {
     if (runCommand("gnuplot --version").status != 0) GTEST_SKIP() << "gnuplot is not installed";
@@ -137,8 +136,6 @@ class FigureTexts : public testing::Test {
         "drawn.svg");
     return folder.read("drawn.svg");
   }
-
-  TemporaryFolder folder;
 
  private:
   const fs::path m_before = fs::current_path();

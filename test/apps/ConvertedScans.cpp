@@ -16,12 +16,12 @@ using semantic_types::ClassId;
 using semantic_types::ClassTable;
 namespace fs = std::filesystem;
 
-CommandRun dataset2rawlog(const std::string& arguments) {
+ProgramRun dataset2rawlog(const std::string& arguments) {
   return runCommand(std::string(MSO_BIN_DIR) + "/dataset2rawlog " + arguments);
 }
 
 std::string failureOf(const std::string& arguments) {
-  const CommandRun result = dataset2rawlog(arguments);
+  const ProgramRun result = dataset2rawlog(arguments);
   EXPECT_NE(result.status, 0) << result.output;
   EXPECT_TRUE(contains(result.output, "dataset2rawlog: ")) << result.output;
   return result.output;
@@ -57,7 +57,7 @@ std::vector<PosedScan> readScans(const fs::path& rawlog, const ClassTable& table
 
 std::vector<PosedScan> convertAndRead(const std::string& arguments, const fs::path& rawlog,
                                       const ClassTable& table) {
-  const CommandRun result = dataset2rawlog(arguments + " -f -o " + quoted(rawlog));
+  const ProgramRun result = dataset2rawlog(arguments + " -f -o " + quoted(rawlog));
   EXPECT_EQ(result.status, 0) << result.output;
   if (result.status != 0) return {};
   return readScans(rawlog, table);

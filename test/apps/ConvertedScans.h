@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "ShellCommand.h"
+#include "RunProgram.h"
 
-CommandRun dataset2rawlog(const std::string& arguments);
+ProgramRun dataset2rawlog(const std::string& arguments);
 /** Runs dataset2rawlog and expects failure; returns the message. */
 std::string failureOf(const std::string& arguments);
 

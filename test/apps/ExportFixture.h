@@ -28,31 +28,18 @@ inline semantic_octree::SemanticOcTree smallPlace(int firstScan = 0, int numScan
   return map;
 }
 
-/** It failed with one line that holds all of these. */
-inline void expectRefusal(const ProgramRun& run, const std::vector<std::string>& parts) {
-  EXPECT_EQ(run.status, 1) << run.errors;
-  EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
-  for (const std::string& part : parts)
-    EXPECT_TRUE(contains(run.errors, part)) << part << " is not in: " << run.errors;
-}
-
 /** A map in a folder of its own, and programs that take it. */
-class MapTool : public testing::Test {
+class MapTool : public FolderTest {
  protected:
   void SetUp() override { saveTree(map, path("map.semantic")); }
 
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-
   /** Writes the map into these files of the folder. */
-  ProgramRun exportTo(const std::vector<std::string>& names,
-                      const std::vector<std::string>& options = {},
+  ProgramRun exportTo(const Words& names, const Words& options = {},
                       const std::string& from = "map.semantic") const {
-    std::vector<std::string> arguments = {path(from)};
+    Words arguments = {path(from)};
     for (const std::string& name : names) arguments.insert(arguments.end(), {"-o", path(name)});
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return runProgram("semantic-map-export", arguments);
+    return runProgram("semantic-map-export", joined(arguments, options));
   }
 
   const semantic_octree::SemanticOcTree map = smallPlace();
-  TemporaryFolder folder;
 };

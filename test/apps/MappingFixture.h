@@ -19,7 +19,7 @@ inline const char* const kSmallConfig =
 
 /** A folder with a configuration, a class table and a rawlog of one scan: road at (2, 0, 0), a car
  * at (0, 3, 0), both from (1, 0, 0). */
-class Rawlog2SemanticMap : public testing::Test {
+class Rawlog2SemanticMap : public FolderTest {
  protected:
   void SetUp() override {
     folder.write("small.ini", kSmallConfig);
@@ -31,25 +31,21 @@ class Rawlog2SemanticMap : public testing::Test {
     return labeledCloud(seconds, {{1.1f, 0.2f, 0.2f}, {-1, 3, 0.2f}}, {1, 3});
   }
 
-  ProgramRun run(const std::string& rawlog = "small.rawlog",
-                 const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"--config", (folder / "small.ini").string(), "--output",
-                                          (folder / "out").string(), "-f"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    arguments.push_back((folder / rawlog).string());
+  ProgramRun run(const std::string& rawlog = "small.rawlog", const Words& more = {}) const {
+    Words arguments = joined({"--config", path("small.ini"), "--output", path("out"), "-f"}, more);
+    arguments.push_back(path(rawlog));
     return runProgram("rawlog2semantic-map", arguments);
   }
 
   semantic_octree::SemanticOcTree map() const {
-    return semantic_octree::loadTree((folder / "out/map.semantic").string());
+    return semantic_octree::loadTree(path("out/map.semantic"));
   }
   nlohmann::json summary() const { return nlohmann::json::parse(folder.read("out/summary.json")); }
 
   /** Runs it where results are already; it must fail with one line that holds all of these, and
    * leave the results as they were. */
-  void expectRefusal(const std::vector<std::string>& parts,
-                     const std::string& rawlog = "small.rawlog",
-                     const std::vector<std::string>& more = {}) const {
+  void expectRefusal(const Words& parts, const std::string& rawlog = "small.rawlog",
+                     const Words& more = {}) const {
     for (const char* name : {"map.semantic", "summary.json", "top.png", "view.png"})
       folder.write(std::string("out/") + name, "of before");
     const ProgramRun result = run(rawlog, more);
@@ -62,6 +58,4 @@ class Rawlog2SemanticMap : public testing::Test {
       EXPECT_EQ(folder.read(std::string("out/") + name), "of before");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "out"), {}), 4);
   }
-
-  TemporaryFolder folder;
 };

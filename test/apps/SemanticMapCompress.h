@@ -40,35 +40,30 @@ solutions:
 )";
 
 /** A small map, and the program on it. */
-class SemanticMapCompress : public testing::Test {
+class SemanticMapCompress : public FolderTest {
  protected:
   void SetUp() override { saveTree(smallMap(namedClasses()), mapFile()); }
 
-  std::string mapFile() const { return (folder / "map.semantic").string(); }
+  std::string mapFile() const { return path("map.semantic"); }
   std::filesystem::path output() const { return folder / "out"; }
 
-  ProgramRun compress(const std::string& weights, std::vector<std::string> more = {}) const {
+  ProgramRun compress(const std::string& weights, Words more = {}) const {
     const std::filesystem::path file = folder.write("weights.yaml", weights);
-    std::vector<std::string> arguments = {mapFile(),  "--weights",       file.string(),
-                                          "--output", output().string(), "-f"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram("semantic-map-compress", arguments);
+    return runProgram(
+        "semantic-map-compress",
+        joined({mapFile(), "--weights", file.string(), "--output", output().string(), "-f"}, more));
   }
-  nlohmann::json reportOf(const std::string& weights,
-                          const std::vector<std::string>& more = {}) const {
-    const ProgramRun run = compress(weights, more);
-    EXPECT_EQ(run.status, 0) << run.errors;
+  nlohmann::json reportOf(const std::string& weights, const Words& more = {}) const {
+    succeeded(compress(weights, more));
     return nlohmann::json::parse(folder.read("out/report.json"));
   }
-  void expectRefusal(const ProgramRun& run, const std::vector<std::string>& parts) const {
+  void expectRefusal(const ProgramRun& run, const Words& parts) const {
     EXPECT_NE(run.status, 0);
     for (const std::string& part : parts)
       EXPECT_TRUE(contains(run.errors, part)) << part << " is not in: " << run.errors;
     EXPECT_FALSE(std::filesystem::exists(output()));
   }
-  void expectRefusalOf(const std::string& solution, const std::vector<std::string>& parts) const {
+  void expectRefusalOf(const std::string& solution, const Words& parts) const {
     expectRefusal(compress(solution), parts);
   }
-
-  TemporaryFolder folder;
 };

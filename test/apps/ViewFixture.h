@@ -46,21 +46,16 @@ inline SemanticOcTree smallMap() {
 /** From above, north up. */
 inline const std::string kTop = "0,0,0,40,-90,90";
 
-class SemanticMapView : public testing::Test {
+class SemanticMapView : public FolderTest {
  protected:
   SemanticMapView() { semantic_octree::saveTree(smallMap(), path("map.semantic")); }
 
-  std::string path(const std::string& name) const { return (folder / name).string(); }
   std::string size() const { return std::to_string(kWidth) + "x" + std::to_string(kHeight); }
 
   /** The window's picture. */
-  cv::Mat draw(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), kViewer);
-    for (const std::string& more :
-         std::vector<std::string>{"--size", size(), "-f", "-o", path("view.png")})
-      arguments.push_back(more);
-    const ProgramRun run = runInX(arguments);
-    EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  cv::Mat draw(const Words& arguments) const {
+    succeeded(
+        runInX(joined({kViewer}, arguments, {"--size", size(), "-f", "-o", path("view.png")})));
     const cv::Mat picture = cv::imread(path("view.png"));
     EXPECT_EQ(picture.cols, kWidth);
     EXPECT_EQ(picture.rows, kHeight);
@@ -111,8 +106,6 @@ class SemanticMapView : public testing::Test {
     }
     return expanded;
   }
-
-  TemporaryFolder folder;
 };
 
 /** Where kTop shows a place, pixels. */

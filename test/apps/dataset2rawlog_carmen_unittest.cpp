@@ -4,7 +4,6 @@
 #include "TemporaryFolder.h"
 
 using Eigen::Vector3d;
-namespace fs = std::filesystem;
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "ConvertedScans.h"
+#include "FolderTest.h"
 #include "SharedData.h"
-#include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
 using namespace semantic_types;
@@ -21,6 +21,9 @@ using semantic_types::ClassTable;
 namespace fs = std::filesystem;
 
 namespace {
+
+using NoisyLabels = FolderTest;
+using SemanticKitti = FolderTest;
 
 /** Tr of the small sequence: LiDAR (x forward, z up) to camera (z forward, y down), displaced. */
 const char* const kTr = "Tr: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n";
@@ -55,8 +58,7 @@ std::string kittiFailure(const TemporaryFolder& folder) {
 
 }  // namespace
 
-TEST(SemanticKitti, posesAreThoseOfTheLidarAndClassesThoseOfTheTable) {
-  const TemporaryFolder folder;
+TEST_F(SemanticKitti, posesAreThoseOfTheLidarAndClassesThoseOfTheTable) {
   writeSmallKitti(folder);
   const auto scans = convertAndRead(kittiArguments(folder), folder / "out.rawlog",
                                     loadClassTable(folder / "classes.yaml"));
@@ -72,8 +74,7 @@ TEST(SemanticKitti, posesAreThoseOfTheLidarAndClassesThoseOfTheTable) {
   EXPECT_LT((scans[1].inMap(0) - Vector3d(1.8, 5.4, -1)).norm(), 1e-5);
 }
 
-TEST(SemanticKitti, imagesComeAlongAsFilesAndLabelsCanBeLeftOut) {
-  const TemporaryFolder folder;
+TEST_F(SemanticKitti, imagesComeAlongAsFilesAndLabelsCanBeLeftOut) {
   writeSmallKitti(folder);
   const fs::path out = folder / "out.rawlog";
   const std::string arguments =
@@ -83,7 +84,7 @@ TEST(SemanticKitti, imagesComeAlongAsFilesAndLabelsCanBeLeftOut) {
   EXPECT_TRUE(contains(failureOf(arguments), "image_2/000000.png: there is no such file"));
   fs::create_directory(folder / "image_2");
   for (const char* name : {"image_2/000000.png", "image_2/000001.png"})
-    cv::imwrite((folder / name).string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));
+    cv::imwrite(path(name), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));
   ASSERT_EQ(dataset2rawlog(arguments).status, 0);
 
   RawlogReader reader(out);
@@ -109,8 +110,7 @@ TEST(SemanticKitti, imagesComeAlongAsFilesAndLabelsCanBeLeftOut) {
   EXPECT_EQ(clouds, 2u);
 }
 
-TEST(SemanticKitti, framesAreChosenByNumber) {
-  const TemporaryFolder folder;
+TEST_F(SemanticKitti, framesAreChosenByNumber) {
   writeSmallKitti(folder);
   const ClassTable table = loadClassTable(folder / "classes.yaml");
   const auto timesWith = [&](const std::string& frames) {
@@ -133,7 +133,7 @@ TEST(SemanticKitti, framesAreChosenByNumber) {
   EXPECT_TRUE(contains(failure("7:1:9"), "no frame was selected"));
 }
 
-TEST(SemanticKitti, badInputIsNamedAndTheOldRawlogStays) {
+TEST_F(SemanticKitti, badInputIsNamedAndTheOldRawlogStays) {
   const std::string label = "labels/000001.label", points = "velodyne/000001.bin",
                     pose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   for (const auto& [file, text, message] : std::vector<std::array<std::string, 3>>{
@@ -148,53 +148,52 @@ TEST(SemanticKitti, badInputIsNamedAndTheOldRawlogStays) {
            {"poses.txt", pose + "1 x 0 0 0 1 0 0 0 0 1 0\n", ":2: expected a number, found 'x'"},
            {"times.txt", "0\n", "1 times for 2 poses"},
            {"classes.yaml", "classes: []", "1 to 254 classes"}}) {
-    const TemporaryFolder folder;
-    writeSmallKitti(folder);
-    folder.write("out.rawlog", "old");
-    folder.write(file, text);
-    const std::string failure = kittiFailure(folder);
-    EXPECT_EQ(folder.read("out.rawlog"), "old");
+    const TemporaryFolder fresh;
+    writeSmallKitti(fresh);
+    fresh.write("out.rawlog", "old");
+    fresh.write(file, text);
+    const std::string failure = kittiFailure(fresh);
+    EXPECT_EQ(fresh.read("out.rawlog"), "old");
     EXPECT_TRUE(contains(failure, file) && contains(failure, message)) << failure;
   }
 }
 
-TEST(SemanticKitti, missingFilesAreNamed) {
+TEST_F(SemanticKitti, missingFilesAreNamed) {
   for (const char* file : {"labels/000001.label", "velodyne/000000.bin", "calib.txt", "poses.txt",
                            "times.txt", "classes.yaml"}) {
-    const TemporaryFolder folder;
-    writeSmallKitti(folder);
-    fs::remove(folder / file);
-    EXPECT_TRUE(contains(kittiFailure(folder), file));
+    const TemporaryFolder fresh;
+    writeSmallKitti(fresh);
+    fs::remove(fresh / file);
+    EXPECT_TRUE(contains(kittiFailure(fresh), file));
   }
 }
 
-TEST(SemanticKitti, scansOfRealStreetsFallIntoPlaceAndOnlyWithTheCalibration) {
+TEST_F(SemanticKitti, scansOfRealStreetsFallIntoPlaceAndOnlyWithTheCalibration) {
   SKIP_WITHOUT_DATA("semantic_kitti");
   const ClassTable table = loadClassTable(shippedTable("semantic_kitti.yaml"));
   const std::string classes = " --classes " + quoted(shippedTable("semantic_kitti.yaml"));
   for (const char* name : {"00", "07"}) {
-    const TemporaryFolder folder;
+    const TemporaryFolder fresh;
     const fs::path real = sharedDataDir() / "semantic_kitti" / name;
     const auto scans =
-        convertAndRead("semantic-kitti " + quoted(real) + classes, folder / "a.rawlog", table);
+        convertAndRead("semantic-kitti " + quoted(real) + classes, fresh / "a.rawlog", table);
     ASSERT_EQ(scans.size(), 10u);
     const double right = agreement(scans, 0.2);
     EXPECT_GE(right, 0.975) << name;
 
     for (const char* part : {"velodyne", "labels", "poses.txt", "times.txt"})
-      fs::create_symlink(fs::absolute(real / part), folder / part);
-    folder.write("calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
+      fs::create_symlink(fs::absolute(real / part), fresh / part);
+    fresh.write("calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
     const double wrong =
-        agreement(convertAndRead("semantic-kitti " + quoted(folder.path()) + classes,
-                                 folder / "b.rawlog", table),
+        agreement(convertAndRead("semantic-kitti " + quoted(fresh.path()) + classes,
+                                 fresh / "b.rawlog", table),
                   0.2);
     EXPECT_LT(wrong, right - 0.02) << name;
     std::cout << name << ": " << right << ", without Tr " << wrong << "\n";
   }
 }
 
-TEST(LabelNoise, replacesThatShareByOtherClassesTheSameForASeed) {
-  const TemporaryFolder folder;
+TEST_F(NoisyLabels, replacesThatShareByOtherClassesTheSameForASeed) {
   writeSmallKitti(folder);
   const std::size_t n = 30000;
   std::vector<float> points;
@@ -224,8 +223,7 @@ TEST(LabelNoise, replacesThatShareByOtherClassesTheSameForASeed) {
       EXPECT_NEAR((changes[{before, after}]) / (n / 4.0), before == after ? 0.7 : 0.15, 0.02);
 }
 
-TEST(LabelNoise, blobsAreWrongAsAWholeAndPersistentOnesInAllScans) {
-  const TemporaryFolder folder;
+TEST_F(NoisyLabels, blobsAreWrongAsAWholeAndPersistentOnesInAllScans) {
   writeSmallKitti(folder);
   // Things of 7 mm, farther apart than blobs are large.
   std::vector<float> points;
@@ -267,8 +265,7 @@ TEST(LabelNoise, blobsAreWrongAsAWholeAndPersistentOnesInAllScans) {
   }
 }
 
-TEST(LabelNoise, badSharesAreNamed) {
-  const TemporaryFolder folder;
+TEST_F(NoisyLabels, badSharesAreNamed) {
   writeSmallKitti(folder);
   EXPECT_TRUE(
       contains(failureOf(kittiArguments(folder) + " --label-noise 1.5 -o " + quoted(folder / "x")),

@@ -2,18 +2,19 @@
 #include <semantic_types/ClassTable.h>
 
 #include "ConvertedScans.h"
+#include "FolderTest.h"
+#include "RunProgram.h"
 #include "SharedData.h"
-#include "ShellCommand.h"
-#include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
 using namespace semantic_types;
 using Eigen::Vector3d;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
-namespace fs = std::filesystem;
 
 namespace {
+
+using Pcd = FolderTest;
 
 const char* const kPcdHead =
     "# .PCD v0.7\nVERSION 0.7\nFIELDS intensity x y z label\nSIZE 4 4 4 4 4\nTYPE F F F F U\n"
@@ -22,8 +23,7 @@ const char* const kPcdHead =
 
 }  // namespace
 
-TEST(Pcd, pointsComeBackInTheWorldAndTheSensorIsAtTheViewpoint) {
-  const TemporaryFolder folder;
+TEST_F(Pcd, pointsComeBackInTheWorldAndTheSensorIsAtTheViewpoint) {
   const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 3 -1\n9 1 2 3.5 0\n");
   ClassTable table;
   for (const char* name : {"a", "b", "c"}) table.add(name, {});
@@ -36,8 +36,7 @@ TEST(Pcd, pointsComeBackInTheWorldAndTheSensorIsAtTheViewpoint) {
   EXPECT_EQ(scans[0].scan.cloud.classes, (std::vector<ClassId>{3, 0}));
 }
 
-TEST(Pcd, aClassTableFoldsTheLabels) {
-  const TemporaryFolder folder;
+TEST_F(Pcd, aClassTableFoldsTheLabels) {
   folder.write("classes.yaml", kThreeClasses);
   const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 252\n9 1 2 4 70\n");
   const auto scans =
@@ -46,8 +45,7 @@ TEST(Pcd, aClassTableFoldsTheLabels) {
   EXPECT_EQ(scans.at(0).scan.cloud.classes, (std::vector<ClassId>{3, 2}));
 }
 
-TEST(Pcd, filesMayBePlyAndTheLabelsFieldHasAnyName) {
-  const TemporaryFolder folder;
+TEST_F(Pcd, filesMayBePlyAndTheLabelsFieldHasAnyName) {
   ClassTable table;
   for (const char* name : {"a", "b"}) table.add(name, {});
   const std::string head =
@@ -65,8 +63,7 @@ TEST(Pcd, filesMayBePlyAndTheLabelsFieldHasAnyName) {
   EXPECT_EQ(bare.at(0).scan.counts.labeled, 0u);
 }
 
-TEST(Pcd, fieldsOfSeveralValuesMoveTheOthers) {
-  const TemporaryFolder folder;
+TEST_F(Pcd, fieldsOfSeveralValuesMoveTheOthers) {
   const auto file = folder.write(
       "a.pcd",
       "FIELDS normal x y z label\nCOUNT 3 1 1 1 1\nPOINTS 2\nDATA ascii\n1 2 3 5 6 7 4\n"
@@ -78,7 +75,7 @@ TEST(Pcd, fieldsOfSeveralValuesMoveTheOthers) {
   EXPECT_EQ(scans[0].scan.cloud.classes[0], 4);
 }
 
-TEST(Pcd, badInputIsNamed) {
+TEST_F(Pcd, badInputIsNamed) {
   const std::string head = kPcdHead, fields = "FIELDS x y z label\n", data = "DATA ascii\n";
   const auto grid = [&](const std::string& size) {
     return fields + size + "\nPOINTS 2\n" + data + "1 2 3 1\n1 2 3 1\n";
@@ -103,17 +100,16 @@ TEST(Pcd, badInputIsNamed) {
            {grid("WIDTH 0\nHEIGHT 0"), otherNumber},
            {grid("WIDTH 1\nHEIGHT 1099511627776"), otherNumber},
            {"nothing\n", "no FIELDS"}}) {
-    const TemporaryFolder folder;
-    const std::string file = quoted(folder.write("a.pcd", text));
-    const std::string failure = failureOf("pcd " + file + " -o " + quoted(folder / "out.rawlog"));
+    const TemporaryFolder fresh;
+    const std::string file = quoted(fresh.write("a.pcd", text));
+    const std::string failure = failureOf("pcd " + file + " -o " + quoted(fresh / "out.rawlog"));
     EXPECT_TRUE(contains(failure, "a.pcd") && contains(failure, message)) << failure;
   }
   EXPECT_TRUE(contains(failureOf("pcd only_one"), "--output is required"));
 }
 
-TEST(Pcd, realOnesKeepTheirWorldCoordinates) {
+TEST_F(Pcd, realOnesKeepTheirWorldCoordinates) {
   SKIP_WITHOUT_DATA("sim_unstructured");
-  const TemporaryFolder folder;
   ClassTable table;
   for (const char* name : {"a", "b", "c"}) table.add(name, {});
   const auto file = sharedDataDir() / "sim_unstructured/sim_unstructured_annotated_1.pcd";
@@ -123,15 +119,13 @@ TEST(Pcd, realOnesKeepTheirWorldCoordinates) {
   EXPECT_NEAR(scans[0].T_map_robot.x(), 0.999984, 1e-6);
 }
 
-TEST(Pcd, onATerminalABarSaysHowFarTheConversionIs) {
+TEST_F(Pcd, onATerminalABarSaysHowFarTheConversionIs) {
   if (runCommand("command -v script").status != 0) GTEST_SKIP() << "needs bsdutils";
-  const TemporaryFolder folder;
   const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 3 0\n9 1 2 3.5 0\n");
-  const std::string command = MSO_BIN_DIR "/dataset2rawlog pcd " + file.string() + " -f -o " +
-                              (folder / "out.rawlog").string();
+  const std::string command =
+      MSO_BIN_DIR "/dataset2rawlog pcd " + file.string() + " -f -o " + path("out.rawlog");
   const std::string shown = runCommand("script -qec '" + command + "' /dev/null").output;
   EXPECT_TRUE(contains(shown, "Converting: [.....")) << shown;
-  EXPECT_TRUE(contains(shown, "\r\033[K" + (folder / "out.rawlog").string() + ": 1 scans"))
-      << shown;
+  EXPECT_TRUE(contains(shown, "\r\033[K" + path("out.rawlog") + ": 1 scans")) << shown;
   EXPECT_FALSE(contains(runCommand(command).output, "Converting"));
 }

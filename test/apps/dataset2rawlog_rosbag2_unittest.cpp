@@ -6,15 +6,16 @@
 
 #include "BagWriter.h"
 #include "ConvertedScans.h"
-#include "TemporaryFolder.h"
+#include "FolderTest.h"
 
-namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
 
 namespace {
+
+using Rosbag2 = FolderTest;
 
 Isometry3d at(double x, double y, double z, double heading = 0) {
   return Eigen::Translation3d(x, y, z) * Isometry3d(Eigen::AngleAxisd(heading, Vector3d::UnitZ()));
@@ -66,24 +67,21 @@ std::string messageOf(const std::string& arguments, const TemporaryFolder& folde
 
 }  // namespace
 
-TEST(Rosbag2, mcapOfAnyCompressionHasTheScansAndWhereTheyWere) {
+TEST_F(Rosbag2, mcapOfAnyCompressionHasTheScansAndWhereTheyWere) {
   for (const char* chunks : {"none", "", "zstd", "lz4"})
     for (const bool bigEndian : {false, true}) {
       SCOPED_TRACE(std::string(chunks) + (bigEndian ? " big" : ""));
-      const TemporaryFolder folder;
-      expectDrive(
-          scansOf(quoted(folder.write("a.mcap", mcapOf(drive(bigEndian), chunks))), folder));
+      const TemporaryFolder fresh;
+      expectDrive(scansOf(quoted(fresh.write("a.mcap", mcapOf(drive(bigEndian), chunks))), fresh));
     }
 }
 
-TEST(Rosbag2, sqliteHasThemToo) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, sqliteHasThemToo) {
   writeSqliteBag(folder / "a.db3", drive());
   expectDrive(scansOf(quoted(folder / "a.db3"), folder));
 }
 
-TEST(Rosbag2, aFolderHasSeveralFilesInTheOrderOfTheirNumbers) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, aFolderHasSeveralFilesInTheOrderOfTheirNumbers) {
   const std::vector<BagMessage> all = drive();
   for (std::size_t i = 0; i < all.size(); ++i)
     folder.write("bag/bag_" + std::to_string(i + 5) + ".mcap", mcapOf({all[i]}, "zstd"));
@@ -91,8 +89,7 @@ TEST(Rosbag2, aFolderHasSeveralFilesInTheOrderOfTheirNumbers) {
   expectDrive(scansOf(quoted(folder / "bag"), folder));
 }
 
-TEST(Rosbag2, odometryCountsWhereNoTransformTells) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, odometryCountsWhereNoTransformTells) {
   std::vector<BagMessage> bag = {
       transformMessage("/tf_static", 0, "base_link", "lidar", at(0, 0, 1)),
       odometryMessage(100, at(0, 0, 0)), odometryMessage(102, at(4, 2, 0))};
@@ -106,21 +103,19 @@ TEST(Rosbag2, odometryCountsWhereNoTransformTells) {
   EXPECT_LT((others.at(0).inMap(0) - Vector3d(8, 0, 1)).norm(), 1e-5);
 }
 
-TEST(Rosbag2, scansThatNoTransformPlacesAreSkippedAndCounted) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, scansThatNoTransformPlacesAreSkippedAndCounted) {
   auto bag = drive();
   bag.push_back(cloudMessage("/points", 102.5, "lidar", {{1, 0, 0, 40}}));
   bag.push_back(cloudMessage("/points", 99, "lidar", {{1, 0, 0, 40}}));
   tableIn(folder);
-  const CommandRun run = dataset2rawlog("rosbag2 --classes " + quoted(folder / "classes.yaml") +
+  const ProgramRun run = dataset2rawlog("rosbag2 --classes " + quoted(folder / "classes.yaml") +
                                         " " + quoted(folder.write("a.mcap", mcapOf(bag, ""))) +
                                         " -o " + quoted(folder / "out.rawlog"));
   EXPECT_NE(run.output.find("4 scans"), std::string::npos) << run.output;
   EXPECT_NE(run.output.find("2 frames skipped"), std::string::npos) << run.output;
 }
 
-TEST(Rosbag2, topicsAreChosenWhereThereAreSeveral) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, topicsAreChosenWhereThereAreSeveral) {
   auto bag = drive();
   bag.push_back(cloudMessage("/other", 101, "base_link", {{1, 0, 0, 40}, {2, 0, 0, 40}}));
   const std::string file = quoted(folder.write("a.mcap", mcapOf(bag, "zstd")));
@@ -179,8 +174,7 @@ void expectDepth(const PosedScan& scan, double x) {
 
 }  // namespace
 
-TEST(Rosbag2, depthImagesHaveTheLabelsOfTheirStampThoughTheseComeLater) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, depthImagesHaveTheLabelsOfTheirStampThoughTheseComeLater) {
   auto bag = cameraDrive();
   bag.push_back(imageMessage("/cam/color/image", 101, "optical", "rgb8", 1,
                              std::vector<std::array<std::uint8_t, 3>>(4)));
@@ -188,7 +182,7 @@ TEST(Rosbag2, depthImagesHaveTheLabelsOfTheirStampThoughTheseComeLater) {
   bag.push_back(labelImage(103));
   bag.push_back(labelImage(101));
   for (const bool isSqlite : {false, true}) {
-    const fs::path file = folder / (isSqlite ? "a.db3" : "a.mcap");
+    const std::filesystem::path file = folder / (isSqlite ? "a.db3" : "a.mcap");
     isSqlite ? writeSqliteBag(file, bag) : void(folder.write("a.mcap", mcapOf(bag, "zstd")));
     const auto scans = scansOf(quoted(file), folder);
     ASSERT_EQ(scans.size(), 2u);  // nothing says what was seen after 102 s
@@ -198,8 +192,7 @@ TEST(Rosbag2, depthImagesHaveTheLabelsOfTheirStampThoughTheseComeLater) {
   }
 }
 
-TEST(Rosbag2, depthImagesMayBeMetersAndComeWithoutLabels) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, depthImagesMayBeMetersAndComeWithoutLabels) {
   auto bag = cameraDrive();
   auto meters = depths(2.f);
   meters[4] = NAN;
@@ -213,8 +206,7 @@ TEST(Rosbag2, depthImagesMayBeMetersAndComeWithoutLabels) {
   EXPECT_EQ(scansOf("--label-images /net/labels " + file, folder).at(0).scan.counts.labeled, 6u);
 }
 
-TEST(Rosbag2, laserScansAreSeenFromTheirBeams) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, laserScansAreSeenFromTheirBeams) {
   std::vector<BagMessage> bag = {
       transformMessage("/tf_static", 0, "base_link", "laser", at(0.5, 0, 1, M_PI / 2)),
       transformMessage("/tf", 100, "odom", "base_link", at(0, 0, 0)),
@@ -237,8 +229,7 @@ TEST(Rosbag2, laserScansAreSeenFromTheirBeams) {
   EXPECT_LT((points(1)[1] - Vector3d(2.5, -5, 1)).norm(), 1e-4);
 }
 
-TEST(Rosbag2, whatIsWrongWithImagesIsNamed) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, whatIsWrongWithImagesIsNamed) {
   tableIn(folder);
   const auto failureWith = [&](const std::vector<BagMessage>& more,
                                const std::string& arguments = "") {
@@ -279,8 +270,7 @@ TEST(Rosbag2, whatIsWrongWithImagesIsNamed) {
       "the camera's calibration is for 8 x 8 pixels, the image has 4 x 2");
 }
 
-TEST(Rosbag2, whatIsWrongIsNamed) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, whatIsWrongIsNamed) {
   tableIn(folder);
   const auto failureWith = [&](const std::string& bytes,
                                const std::string& arguments = "--no-labels") {
@@ -320,8 +310,7 @@ TEST(Rosbag2, whatIsWrongIsNamed) {
             std::string::npos);
 }
 
-TEST(Rosbag2, aChunkThatAnnouncesMoreThanItHoldsTakesNoMemory) {
-  const TemporaryFolder folder;
+TEST_F(Rosbag2, aChunkThatAnnouncesMoreThanItHoldsTakesNoMemory) {
   std::string bomb = mcapOf(drive(), "zstd");
   const std::size_t chunk = bomb.find('\6', 33);  // behind the file's head
   const std::uint64_t huge = (std::uint64_t{1} << 30) - 1;

@@ -10,17 +10,18 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "ConvertedScans.h"
+#include "FolderTest.h"
 #include "SharedData.h"
-#include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
 using namespace semantic_types;
 using Eigen::Vector3d;
-using semantic_types::ClassId;
 using semantic_types::ClassTable;
 namespace fs = std::filesystem;
 
 namespace {
+
+using Tum = FolderTest;
 
 constexpr int kRows = 6, kCols = 8;
 
@@ -97,8 +98,7 @@ std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const fs::path& rawlog)
 
 }  // namespace
 
-TEST(Tum, depthImagesWithPixelLabelsLandRightInTheWorld) {
-  const TemporaryFolder folder;
+TEST_F(Tum, depthImagesWithPixelLabelsLandRightInTheWorld) {
   writeSmallTum(folder);
   expectSmallTum(convertAndRead(tumArguments(folder), folder / "out.rawlog",
                                 loadClassTable(folder / "classes.yaml")));
@@ -110,8 +110,7 @@ TEST(Tum, depthImagesWithPixelLabelsLandRightInTheWorld) {
     for (int c = 0; c < kCols; ++c) EXPECT_EQ(color.at<cv::Vec3b>(r, c), colorOf(r, c));
 }
 
-TEST(Tum, withMoreThan64ClassesTheyAreLabeledClouds) {
-  const TemporaryFolder folder;
+TEST_F(Tum, withMoreThan64ClassesTheyAreLabeledClouds) {
   writeSmallTum(folder);
   folder.write("classes.yaml", hundredClasses());
   expectSmallTum(convertAndRead(tumArguments(folder), folder / "out.rawlog",
@@ -120,8 +119,7 @@ TEST(Tum, withMoreThan64ClassesTheyAreLabeledClouds) {
       observationsOf(folder / "out.rawlog").at(1)));
 }
 
-TEST(Tum, labelsCanBeLeftOutThenNoTableIsNeeded) {
-  const TemporaryFolder folder;
+TEST_F(Tum, labelsCanBeLeftOutThenNoTableIsNeeded) {
   writeSmallTum(folder);
   fs::remove(folder / "label.txt");
   const auto scans = convertAndRead("tum --no-labels " + quoted(folder.path()),
@@ -133,11 +131,10 @@ TEST(Tum, labelsCanBeLeftOutThenNoTableIsNeeded) {
                        "--classes (except with --no-labels) is required"));
 }
 
-TEST(Tum, framesWithoutAPoseOrALabelImageAreSkippedAndReported) {
-  const TemporaryFolder folder;
+TEST_F(Tum, framesWithoutAPoseOrALabelImageAreSkippedAndReported) {
   writeSmallTum(folder);
   folder.write("depth.txt", "1.0 depth/a.png\n1.5 depth/a.png\n2.0 depth/b.png\n9 depth/b.png\n");
-  const CommandRun result =
+  const ProgramRun result =
       dataset2rawlog(tumArguments(folder) + " -o " + quoted(folder / "out.rawlog"));
   EXPECT_EQ(result.status, 0);
   EXPECT_TRUE(contains(result.output, ": 2 scans, 80 points, 75.0 % with a class"))
@@ -145,15 +142,15 @@ TEST(Tum, framesWithoutAPoseOrALabelImageAreSkippedAndReported) {
   EXPECT_TRUE(contains(result.output, "2 frames skipped")) << result.output;
 }
 
-TEST(Tum, badInputIsNamed) {
+TEST_F(Tum, badInputIsNamed) {
   const auto failureWith = [](const std::string& file, const std::string& text) {
-    const TemporaryFolder folder;
-    writeSmallTum(folder);
-    folder.write(file, text);
+    const TemporaryFolder fresh;
+    writeSmallTum(fresh);
+    fresh.write(file, text);
     const std::string failure =
-        failureOf(tumArguments(folder) + " -o " + quoted(folder / "out.rawlog"));
+        failureOf(tumArguments(fresh) + " -o " + quoted(fresh / "out.rawlog"));
     EXPECT_TRUE(contains(failure, file)) << failure;
-    EXPECT_FALSE(fs::exists(folder / "out.rawlog"));
+    EXPECT_FALSE(fs::exists(fresh / "out.rawlog"));
     return failure;
   };
   failureWith("depth/a.png", "no image");
@@ -171,9 +168,8 @@ TEST(Tum, badInputIsNamed) {
   EXPECT_TRUE(contains(failureWith("depth.txt", "1e300 depth/a.png\n"), "s is no time"));
 }
 
-TEST(Tum, framesOfARealFlatAgreeWithEachOther) {
+TEST_F(Tum, framesOfARealFlatAgreeWithEachOther) {
   SKIP_WITHOUT_DATA("replica_apartment_0");
-  const TemporaryFolder folder;
   const ClassTable table = loadClassTable(shippedTable("replica_apartment.yaml"));
   const auto scans = convertAndRead("tum " + quoted(sharedDataDir() / "replica_apartment_0") +
                                         " --frames 0:5:20 --classes " +
@@ -184,7 +180,7 @@ TEST(Tum, framesOfARealFlatAgreeWithEachOther) {
 
   // Depth images and a folder of label images give equal scans.
   const fs::path flat = sharedDataDir() / "replica_apartment_0";
-  const CommandRun plain = dataset2rawlog("tum --no-labels --frames 0:5:20 " + quoted(flat) +
+  const ProgramRun plain = dataset2rawlog("tum --no-labels --frames 0:5:20 " + quoted(flat) +
                                           " -o " + quoted(folder / "plain.rawlog"));
   ASSERT_EQ(plain.status, 0) << plain.output;
   const auto labels = std::make_shared<LabelFolder>(flat / "label", table);

@@ -9,7 +9,7 @@
 
 #include "../semantic_planning/PaintedWorld.h"
 #include "ExportFixture.h"
-#include "ShellCommand.h"
+#include "RunProgram.h"
 #include "SmallRawlogs.h"
 
 namespace fs = std::filesystem;
@@ -58,7 +58,7 @@ class FailingCalls : public testing::TestWithParam<std::string> {
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
   /** The program with its n-th call of a kind failing; below 0: none. */
-  CommandRun run(const std::string& kind = "", int n = -1) const {
+  ProgramRun run(const std::string& kind = "", int n = -1) const {
     std::string command = "cd '" + folder.path().string() + "'; ";
     if (!kind.empty())
       command += "MSO_FAIL='" + kind + ' ' + std::to_string(n) + "' MSO_FAIL_BELOW='" +
@@ -105,7 +105,7 @@ class FailingCalls : public testing::TestWithParam<std::string> {
       EXPECT_TRUE(fs::exists(folder / "out" / name) || after.count(name) == 0)
           << name << " is gone";
   }
-  void expectMessage(const CommandRun& run) const {
+  void expectMessage(const ProgramRun& run) const {
     const std::string name = GetParam().substr(0, GetParam().find(' '));
     const std::size_t at = run.output.rfind(name + ": ");
     EXPECT_NE(at, std::string::npos) << run.output;
@@ -119,7 +119,7 @@ class FailingCalls : public testing::TestWithParam<std::string> {
   TemporaryFolder folder;
 };
 
-const std::vector<std::string> kJobs = {
+const Words kJobs = {
     "semantic-map-edit @map.semantic -f -o @out/a.semantic",
     "semantic-map-merge @map.semantic @other.semantic -f -o @out/tiles --tiles 1.6",
     "semantic-map-export @map.semantic -f -o @out/a.csv -o @out/a.ply -o @out/a.yaml -o @out/a.ot "
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Each, FailingCalls, testing::ValuesIn(kJobs), [](const 
 
 TEST_P(FailingCalls, leaveTheOldFilesOrTheNewAndSayWhy) {
   before = files();
-  const CommandRun whole = run();
+  const ProgramRun whole = run();
   ASSERT_EQ(whole.status, 0) << whole.output;
   after = files();
   for (const std::string kind : {"open", "write", "sync", "rename", "unlink"}) {
@@ -151,7 +151,7 @@ TEST_P(FailingCalls, leaveTheOldFilesOrTheNewAndSayWhy) {
       const int n = each > 1 ? i * (calls - 1) / (each - 1) : 0;
       SCOPED_TRACE(kind + " " + std::to_string(n) + " of " + std::to_string(calls));
       putBack();
-      const CommandRun failed = run(kind, n);
+      const ProgramRun failed = run(kind, n);
       EXPECT_LT(failed.status, 2) << failed.output;
       if (failed.status != 0) expectMessage(failed);
       expectOldOrNew(failed.status == 0, kind == "unlink");

@@ -8,7 +8,7 @@
 namespace {
 
 /** Two scans of the shipped sample. */
-ProgramRun benchmark(std::vector<std::string> arguments) {
+ProgramRun benchmark(Words arguments) {
   const std::string sources = MSO_SOURCE_DIR;
   arguments.insert(arguments.end(), {sources + "/rawlog-samples/village.rawlog", "--classes",
                                      sources + "/config/classes/synthetic.yaml", "--resolution",
@@ -19,8 +19,7 @@ ProgramRun benchmark(std::vector<std::string> arguments) {
 }  // namespace
 
 TEST(InsertionBenchmark, measuresEveryRunnerInOneRun) {
-  const ProgramRun run = benchmark({});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  const ProgramRun run = succeeded(benchmark({}));
   EXPECT_TRUE(contains(run.output, "2 scans"));
   for (const char* name :
        {"bare traversal of all rays", "semantic_octree with G", "octomap::OcTree, discretized",
@@ -33,8 +32,7 @@ TEST(InsertionBenchmark, measuresEveryRunnerInOneRun) {
 
 TEST(InsertionBenchmark, measuresTheChosenRunners) {
   const ProgramRun run =
-      benchmark({"--only", "ColorOcTree", "--rays", "endpoints", "--threads", "2"});
-  ASSERT_EQ(run.status, 0) << run.errors;
+      succeeded(benchmark({"--only", "ColorOcTree", "--rays", "endpoints", "--threads", "2"}));
   EXPECT_TRUE(contains(run.output, "bare traversal"));
   EXPECT_TRUE(contains(run.output, "octomap::ColorOcTree"));
   EXPECT_FALSE(contains(run.output, "mrpt"));

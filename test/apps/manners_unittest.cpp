@@ -5,7 +5,7 @@
 #include <regex>
 
 #include "BuiltPrograms.h"
-#include "ShellCommand.h"
+#include "RunProgram.h"
 #include "TemporaryFolder.h"
 
 namespace {
@@ -23,7 +23,7 @@ class Program : public testing::TestWithParam<std::string> {
     if (const std::string missing = missingLibraryOf(GetParam()); !missing.empty())
       GTEST_SKIP() << "not built: " << missing;
   }
-  CommandRun run(const std::string& arguments) const {
+  ProgramRun run(const std::string& arguments) const {
     return runCommand(std::string(MSO_BIN_DIR) + "/" + GetParam() + " " + arguments);
   }
 };
@@ -34,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(Each, Program, testing::ValuesIn(kPrograms), [](const a
 
 /** The message of a command line that is wrong. */
 std::string usageErrorOf(const std::string& command) {
-  const CommandRun run = runCommand(std::string(MSO_BIN_DIR) + "/" + command);
+  const ProgramRun run = runCommand(std::string(MSO_BIN_DIR) + "/" + command);
   EXPECT_EQ(run.status, 64) << run.output;
   return run.output;
 }
@@ -44,7 +44,7 @@ std::string usageErrorOf(const std::string& command) {
 TEST_P(Program, failsWhereTheStandardOutputTakesNothing) {
   EXPECT_EQ(run("--version").status, 0);
   for (const char* argument : {"--help", "--version"}) {
-    const CommandRun full = run(argument + std::string(" 3>&2 >/dev/full 2>&3"));
+    const ProgramRun full = run(argument + std::string(" 3>&2 >/dev/full 2>&3"));
     EXPECT_EQ(run(std::string(argument) + " >/dev/full; test $? = 1").status, 0) << argument;
     EXPECT_EQ(run(std::string(argument) + " >&-; test $? = 1").status, 0) << argument;
     EXPECT_NE(full.status, 0);
@@ -52,7 +52,7 @@ TEST_P(Program, failsWhereTheStandardOutputTakesNothing) {
 }
 
 TEST_P(Program, endsWith64AndItsNameAfterAWrongCommandLine) {
-  const CommandRun wrong = run("--no-such-option");
+  const ProgramRun wrong = run("--no-such-option");
   EXPECT_EQ(wrong.status, 64) << wrong.output;
   EXPECT_EQ(wrong.output.rfind(GetParam() + ": unknown option '--no-such-option'", 0), 0u)
       << wrong.output;
@@ -64,7 +64,7 @@ TEST_P(Program, endsWithAMessageUnderAnyLimitOfMemory) {
   GTEST_SKIP() << "the address sanitizer takes terabytes of addresses";
 #endif
   const auto statusWith = [this](int megabytes) {
-    const CommandRun run = runCommand("ulimit -c 0; ulimit -v " + std::to_string(1024 * megabytes) +
+    const ProgramRun run = runCommand("ulimit -c 0; ulimit -v " + std::to_string(1024 * megabytes) +
                                       "; " MSO_BIN_DIR "/" + GetParam() + " --version");
     EXPECT_TRUE(run.status == 0 || run.status == 1 || run.status == 127)
         << run.status << " with " << megabytes << " MB: " << run.output;

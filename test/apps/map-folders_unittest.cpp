@@ -1,7 +1,6 @@
 // Programs and folders of tiles: what comes out is what comes of the map in one piece.
 #include <gtest/gtest.h>
 #include <map_folders/MapFolder.h>
-#include <map_operations/MapOperations.h>
 #include <strict_files/TextFile.h>
 
 #include <nlohmann/json.hpp>
@@ -32,31 +31,23 @@ class MapFolders : public testing::Test {
   }
 
   static std::string path(const std::string& name) { return (*folder / name).string(); }
-  static std::vector<std::string> mapping(const std::string& output, bool inTiles = false) {
-    std::vector<std::string> arguments = {
-        "--config",  kSources + "/config/maps/synthetic.ini", "--resolution", "0.8", "-f", "-o",
-        path(output)};
-    if (inTiles)
-      for (const std::string& more :
-           {std::string("--tiles"), path("tiles"), std::string("--tile-size"), std::string("12.8"),
-            std::string("--memory"), std::string("0.1")})
-        arguments.push_back(more);
-    arguments.push_back(kSources + "/rawlog-samples/village.rawlog");
-    return arguments;
+  static Words mapping(const std::string& output, bool inTiles = false) {
+    return joined({"--config", kSources + "/config/maps/synthetic.ini", "--resolution", "0.8", "-f",
+                   "-o", path(output)},
+                  inTiles
+                      ? Words{"--tiles", path("tiles"), "--tile-size", "12.8", "--memory", "0.1"}
+                      : Words{},
+                  {kSources + "/rawlog-samples/village.rawlog"});
   }
-  static ProgramRun run(const std::string& program, const std::vector<std::string>& arguments) {
-    const ProgramRun run = runProgram(program, arguments);
-    EXPECT_EQ(run.status, 0) << run.errors;
-    return run;
+  static ProgramRun run(const std::string& program, const Words& arguments) {
+    return succeeded(runProgram(program, arguments));
   }
   /** Runs it with both maps, and compares the files of this name that it writes. */
   static void expectSame(const std::string& program, const std::string& name,
-                         const std::vector<std::string>& options = {}) {
+                         const Words& options = {}) {
     for (const std::string map : {"plain/map.semantic", "tiles"}) {
-      std::vector<std::string> arguments = {path(map), "-f", "-o", path(map + "." + name)};
-      arguments.insert(arguments.end(), options.begin(), options.end());
-      if (map == "tiles") arguments.insert(arguments.end(), {"--memory", "0.1"});
-      run(program, arguments);
+      run(program, joined({path(map), "-f", "-o", path(map + "." + name)}, options,
+                          map == "tiles" ? Words{"--memory", "0.1"} : Words{}));
     }
     EXPECT_FALSE(folder->read("tiles." + name).empty());
     EXPECT_EQ(folder->read("tiles." + name), folder->read("plain/map.semantic." + name));
@@ -131,15 +122,15 @@ TEST_F(MapFolders, areAskedAndPlannedOnAsMapsInOnePiece) {
 
 TEST_F(MapFolders, arePlannedOnInACorridorAsMapsInOnePiece) {
   for (const std::string map : {"plain/map.semantic", "tiles"}) {
-    std::vector<std::string> arguments = {path(map),
-                                          "--start=-14,-19,10",
-                                          "--goal=25,-12,90",
-                                          "--order",
-                                          kSources + "/config/orders/synthetic.yaml",
-                                          "-o",
-                                          path("way-" + map.substr(0, 5)),
-                                          "--memory",
-                                          "0.1"};
+    Words arguments = {path(map),
+                       "--start=-14,-19,10",
+                       "--goal=25,-12,90",
+                       "--order",
+                       kSources + "/config/orders/synthetic.yaml",
+                       "-o",
+                       path("way-" + map.substr(0, 5)),
+                       "--memory",
+                       "0.1"};
     if (map != "tiles") arguments.insert(arguments.end(), {"--corridor", "30"});
     run("semantic-map-plan", arguments);
   }
@@ -152,15 +143,12 @@ TEST_F(MapFolders, arePlannedOnInACorridorAsMapsInOnePiece) {
 TEST_F(MapFolders, areCompressedToTheSameTrees) {
   const std::string one = path("one.yaml"), five = kSources + "/config/weights/synthetic.yaml";
   strict_files::writeText(one, "block_size: 3.2\nname: road\nrelevant: {road: 1}\n");
-  const std::vector<std::vector<std::string>> wanted = {
-      {five}, {one, "--leaves", "5000"}, {one, "--bytes", "40000"}};
-  for (const std::vector<std::string>& target : wanted) {
+  const std::vector<Words> wanted = {{five}, {one, "--leaves", "5000"}, {one, "--bytes", "40000"}};
+  for (const Words& target : wanted) {
     for (const std::string map : {"plain/map.semantic", "tiles"}) {
-      std::vector<std::string> arguments = {
-          path(map), "-o",       path("compressed-" + map.substr(0, 5)), "--memory", "0.1",
-          "-f",      "--weights"};
-      arguments.insert(arguments.end(), target.begin(), target.end());
-      run("semantic-map-compress", arguments);
+      run("semantic-map-compress", joined({path(map), "-o", path("compressed-" + map.substr(0, 5)),
+                                           "--memory", "0.1", "-f", "--weights"},
+                                          target));
     }
     std::size_t solutions = 0, folders = 0;
     for (const auto& entry : std::filesystem::directory_iterator(path("compressed-tiles"))) {
@@ -178,7 +166,7 @@ TEST_F(MapFolders, areCompressedToTheSameTrees) {
 
 TEST_F(MapFolders, takeAnotherDriveIn) {
   std::filesystem::copy(path("tiles"), path("both"));
-  std::vector<std::string> arguments = mapping("again", true);
+  Words arguments = mapping("again", true);
   *std::find(arguments.begin(), arguments.end(), path("tiles")) = path("both");
   run("rawlog2semantic-map", arguments);
   const ProgramRun info = run("semantic-map-info", {path("both")});
@@ -205,9 +193,8 @@ TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
 }
 
 TEST_F(MapFolders, haveNoSecondMapToCompareWith) {
-  auto arguments = mapping("never", true);
-  arguments.push_back("--compare-upkeep");
-  const ProgramRun run = runProgram("rawlog2semantic-map", arguments);
+  const ProgramRun run =
+      runProgram("rawlog2semantic-map", joined(mapping("never", true), {"--compare-upkeep"}));
   EXPECT_EQ(run.status, 64);
   EXPECT_TRUE(contains(run.errors, "--compare-upkeep")) << run.errors;
   EXPECT_FALSE(std::filesystem::exists(path("never")));
@@ -223,7 +210,7 @@ TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
   const std::size_t files = std::distance(std::filesystem::directory_iterator(bad), {});
   const std::string order = kSources + "/config/orders/synthetic.yaml",
                     weights = kSources + "/config/weights/synthetic.yaml";
-  const std::vector<std::vector<std::string>> runs = {
+  const std::vector<Words> runs = {
       {"semantic-map-info"},
       {"semantic-map-info", "--at", "0,0,0"},
       {"semantic-map-edit", "-o", path("never.semantic")},
@@ -237,7 +224,7 @@ TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
       {"semantic-map-send", "--port", "0", "--timeout", "1"}};
   for (const std::string& text : {index.substr(0, index.size() / 2), more}) {
     strict_files::writeText(bad / "index.yaml", text);
-    for (std::vector<std::string> arguments : runs) {
+    for (Words arguments : runs) {
       const std::string program = arguments[0];
       if (std::count(arguments.begin(), arguments.end(), bad.string()))
         arguments.erase(arguments.begin());
@@ -253,7 +240,7 @@ TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
   EXPECT_FALSE(std::filesystem::exists(path("never")));
   std::filesystem::remove(bad / "index.yaml");
   std::filesystem::remove_all(path("anew"));
-  std::vector<std::string> tiles = {"-o", path("anew"), "--tiles", "12.8"};
+  Words tiles = {"-o", path("anew"), "--tiles", "12.8"};
   for (const auto& entry : std::filesystem::directory_iterator(bad))
     if (entry.path().extension() == ".semantic") tiles.push_back(entry.path().string());
   run("semantic-map-merge", tiles);

@@ -18,7 +18,7 @@ const char* const kPcd =
 class UserData : public MapTool {
  protected:
   /** Runs a program in the folder. */
-  ProgramRun run(const std::string& program, const std::vector<std::string>& arguments) const {
+  ProgramRun run(const std::string& program, const Words& arguments) const {
     const fs::path before = fs::current_path();
     fs::current_path(folder.path());
     const ProgramRun result = runProgram(program, arguments);
@@ -26,9 +26,9 @@ class UserData : public MapTool {
     return result;
   }
   /** It is refused, with this said, and these files are as before. */
-  void expectUntouched(const std::string& program, const std::vector<std::string>& arguments,
-                       const std::string& said, const std::vector<std::string>& files) const {
-    std::vector<std::string> before;
+  void expectUntouched(const std::string& program, const Words& arguments, const std::string& said,
+                       const Words& files) const {
+    Words before;
     for (const std::string& file : files) before.push_back(folder.read(file));
     const std::size_t entries = entriesOf(folder.path());
     const ProgramRun result = run(program, arguments);
@@ -43,11 +43,10 @@ class UserData : public MapTool {
   }
 };
 
-const std::vector<std::string> kWriters = {"rawlog2semantic-map", "semantic-map-compress",
-                                           "semantic-map-plan",   "semantic-map-drive",
-                                           "semantic-map-export", "semantic-map-merge",
-                                           "semantic-map-edit",   "synth-rawlog",
-                                           "planning-study",      "drive-study"};
+const Words kWriters = {"rawlog2semantic-map", "semantic-map-compress", "semantic-map-plan",
+                        "semantic-map-drive",  "semantic-map-export",   "semantic-map-merge",
+                        "semantic-map-edit",   "synth-rawlog",          "planning-study",
+                        "drive-study"};
 
 }  // namespace
 
@@ -89,15 +88,13 @@ TEST_F(UserData, whatIsThereStaysUnlessItIsToBeWrittenOver) {
   folder.write("a.semantic", "precious");
   folder.write("a.rawlog", "precious");
   folder.write("a.pcd", kPcd);
-  for (const auto& [program, arguments] : std::map<std::string, std::vector<std::string>>{
-           {"semantic-map-edit", {"map.semantic", "-o", "a.semantic"}},
-           {"semantic-map-merge", {"map.semantic", "-o", "a.semantic"}},
-           {"dataset2rawlog", {"pcd", "a.pcd", "-o", "a.rawlog"}}}) {
+  for (const auto& [program, arguments] :
+       std::map<std::string, Words>{{"semantic-map-edit", {"map.semantic", "-o", "a.semantic"}},
+                                    {"semantic-map-merge", {"map.semantic", "-o", "a.semantic"}},
+                                    {"dataset2rawlog", {"pcd", "a.pcd", "-o", "a.rawlog"}}}) {
     const std::string& file = arguments.back();
     expectUntouched(program, arguments, file + ": is there already; -f", {file});
-    auto forced = arguments;
-    forced.push_back("-f");
-    EXPECT_EQ(run(program, forced).status, 0) << program;
+    succeeded(run(program, joined(arguments, {"-f"})));
     EXPECT_NE(folder.read(file), "precious") << program;
     folder.write(file, "precious");
   }
@@ -124,9 +121,7 @@ TEST_F(UserData, filesOfAFolderAreNotReplacedEither) {
                     file + ": is there already", {file});
     fs::remove(folder / file);
   }
-  const ProgramRun result =
-      run("rawlog2semantic-map", {"--config", "config.ini", "-o", "out", "a.rawlog"});
-  EXPECT_EQ(result.status, 0) << result.errors;
+  succeeded(run("rawlog2semantic-map", {"--config", "config.ini", "-o", "out", "a.rawlog"}));
   EXPECT_EQ(folder.read("out/other"), "of before");
 }
 
@@ -137,10 +132,8 @@ TEST_F(UserData, otherOutputsAreNotReplacedEither) {
   folder.write("preview/000000.png", "precious");
   folder.write("p.png", "precious");
   writeSmallRawlog(folder / "a.rawlog", robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
-  const auto mapping = [](const std::vector<std::string>& more) {
-    std::vector<std::string> all = {"--config", "config.ini", "-o", "out", "a.rawlog"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+  const auto mapping = [](const Words& more) {
+    return joined({"--config", "config.ini", "-o", "out", "a.rawlog"}, more);
   };
   const std::string program = "rawlog2semantic-map";
   expectUntouched(program, mapping({"--save-labeled", "labeled.rawlog"}),
@@ -183,9 +176,7 @@ TEST_F(UserData, namesThatAreNoUtf8DoNotDiscardARun) {
       "Stra\xDF"
       "e.rawlog";
   writeSmallRawlog(folder / rawlog, robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
-  const ProgramRun result =
-      run("rawlog2semantic-map", {"--config", "config.ini", "-o", "out", rawlog});
-  EXPECT_EQ(result.status, 0) << result.errors;
+  succeeded(run("rawlog2semantic-map", {"--config", "config.ini", "-o", "out", rawlog}));
   EXPECT_TRUE(fs::exists(folder / "out/map.semantic"));
   EXPECT_EQ(nlohmann::json::parse(folder.read("out/summary.json"))["rawlogs"][0],
             "Stra\xEF\xBF\xBD"

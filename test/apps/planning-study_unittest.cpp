@@ -13,7 +13,7 @@ namespace {
 
 using Rows = std::vector<std::map<std::string, std::string>>;
 
-class PlanningStudy : public testing::Test {
+class PlanningStudy : public FolderTest {
  protected:
   void SetUp() override {
     PaintedWorld world;  // grass with a road around a corner, and mud
@@ -26,15 +26,12 @@ class PlanningStudy : public testing::Test {
     folder.write("weights.yaml", "relevant: {road: 1}\nalpha: 0.001\nname: roads\n");
   }
 
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-
-  ProgramRun study(const std::vector<std::string>& more, const std::string& output = "study.csv",
+  ProgramRun study(const Words& more, const std::string& output = "study.csv",
                    const std::string& order = "order.yaml") const {
-    std::vector<std::string> arguments = {
-        path("map.semantic"), "-f",       "--order",    path(order),   "--weights",
-        path("weights.yaml"), "--output", path(output), "--instances", "4",
-        "--vertices",         "120"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    Words arguments = joined(
+        {path("map.semantic"), "-f", "--order", path(order), "--weights", path("weights.yaml"),
+         "--output", path(output), "--instances", "4", "--vertices", "120"},
+        more);
     if (std::find(more.begin(), more.end(), "--min-distance") == more.end())
       arguments.insert(arguments.end(), {"--min-distance", "8"});
     return runProgram("planning-study", arguments);
@@ -58,8 +55,6 @@ class PlanningStudy : public testing::Test {
     EXPECT_TRUE(contains(run.errors, part)) << run.errors;
     EXPECT_FALSE(std::filesystem::exists(folder / "study.csv"));
   }
-
-  TemporaryFolder folder;
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ TEST_F(Rawlog2SemanticMap, aRawlogThatCannotBeMappedIsRefused) {
   writeSmallRawlog(folder / "lost.rawlog", smallScan(10));
   writeSmallRawlog(folder / "late.rawlog", robotPose(10, 0), smallScan(20));
   writeSmallRawlog(folder / "far.rawlog", robotPose(10, 1e6), smallScan(10));
-  const std::map<std::string, std::vector<std::string>> cases = {
+  const std::map<std::string, Words> cases = {
       {"none.rawlog", {"none.rawlog"}},
       {"empty.rawlog", {"empty.rawlog", "empty"}},
       {"half.rawlog", {"half.rawlog", "cut off"}},
@@ -55,9 +55,9 @@ TEST_F(Rawlog2SemanticMap, whatIsNoRawlogIsCalledByItsNameWithTheCommandThatMake
 }
 
 TEST_F(Rawlog2SemanticMap, posesOfKittiThatDoNotFitTheScansAreRefused) {
-  const auto refuse = [&](const std::string& poses, const std::vector<std::string>& parts) {
+  const auto refuse = [&](const std::string& poses, const Words& parts) {
     folder.write("poses.txt", poses);
-    expectRefusal(parts, "small.rawlog", {"--trajectory", (folder / "poses.txt").string()});
+    expectRefusal(parts, "small.rawlog", {"--trajectory", path("poses.txt")});
   };
   const std::string here = "1 0 0 0 0 1 0 0 0 0 1 0\n", forward = "1 0 0 2 0 1 0 0 0 0 1 0\n";
   refuse(here + forward, {"poses.txt: 2 poses for 1 scans"});
@@ -70,7 +70,7 @@ TEST_F(Rawlog2SemanticMap, aRawlogThatBreaksOffWhileItIsMappedLeavesNothing) {
   const std::string whole = folder.read("small.rawlog");
   folder.write("cut.rawlog", whole.substr(0, whole.size() - 1));
   folder.write("poses.tum", "9 3.1 0 0 0 0 0 1\n11 5.1 0 0 0 0 0 1\n");
-  const std::vector<std::string> poses = {"--trajectory", (folder / "poses.tum").string()};
+  const Words poses = {"--trajectory", path("poses.tum")};
   expectRefusal({"cut.rawlog", "cut off"}, "cut.rawlog", poses);
   fs::remove_all(folder / "out");
   EXPECT_EQ(run("cut.rawlog", poses).status, 1);
@@ -78,11 +78,11 @@ TEST_F(Rawlog2SemanticMap, aRawlogThatBreaksOffWhileItIsMappedLeavesNothing) {
 }
 
 TEST_F(Rawlog2SemanticMap, labelImagesThatDoNotFitAreRefused) {
-  const std::vector<std::string> labels = {"--labels", (folder / "labels").string()};
+  const Words labels = {"--labels", path("labels")};
   expectRefusal({"labels"}, "small.rawlog", labels);
   writeSmallRawlog(folder / "depth.rawlog", robotPose(10, 0), depthImage(10, 40, 40));
   fs::create_directory(folder / "labels");
-  const std::string image = (folder / "labels/10.00.png").string();
+  const std::string image = path("labels/10.00.png");
   cv::imwrite(image, cv::Mat(40, 30, CV_8UC1, cv::Scalar(2)));
   expectRefusal({"depth.rawlog: observation 2", "10.00.png", "30", "40"}, "depth.rawlog", labels);
   cv::imwrite(image, cv::Mat(40, 40, CV_8UC1, cv::Scalar(77)));
@@ -91,7 +91,7 @@ TEST_F(Rawlog2SemanticMap, labelImagesThatDoNotFitAreRefused) {
 
 TEST_F(Rawlog2SemanticMap, aConfigurationWithAWrongLineIsRefused) {
   const std::string small = kSmallConfig;
-  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+  const std::vector<std::pair<std::string, Words>> cases = {
       {"[map]\nresolutoin = 1\n", {"[map]", "'resolutoin'"}},
       {"[insertion]\nmaxrnage = 1\n", {"[insertion]", "'maxrnage'"}},
       {"[labels]\nfolder = 1\n", {"[labels]", "'folder'"}},
@@ -108,15 +108,15 @@ TEST_F(Rawlog2SemanticMap, aConfigurationWithAWrongLineIsRefused) {
         "known are free_space, road", "did you mean 'road'?"}}};
   for (const auto& [text, parts] : cases) {
     folder.write("small.ini", text);
-    std::vector<std::string> all = parts;
+    Words all = parts;
     all.push_back("small.ini");
     expectRefusal(all);
   }
 }
 
 TEST_F(Rawlog2SemanticMap, missingFilesAreRefusedByName) {
-  expectRefusal({"none.yaml"}, "small.rawlog", {"--classes", (folder / "none.yaml").string()});
-  expectRefusal({"none.tum"}, "small.rawlog", {"--trajectory", (folder / "none.tum").string()});
+  expectRefusal({"none.yaml"}, "small.rawlog", {"--classes", path("none.yaml")});
+  expectRefusal({"none.tum"}, "small.rawlog", {"--trajectory", path("none.tum")});
   fs::remove(folder / "small.ini");
   expectRefusal({"small.ini"});
 }
@@ -124,9 +124,9 @@ TEST_F(Rawlog2SemanticMap, missingFilesAreRefusedByName) {
 TEST_F(Rawlog2SemanticMap, anOutputFolderThatCannotBeWrittenIsRefusedByName) {
   const fs::path file = folder.write("file", "of before");
   for (const fs::path& output : {file, file / "below"}) {
-    const ProgramRun result =
-        runProgram("rawlog2semantic-map", {"--config", (folder / "small.ini").string(), "--output",
-                                           output.string(), (folder / "small.rawlog").string()});
+    const ProgramRun result = runProgram(
+        "rawlog2semantic-map",
+        {"--config", path("small.ini"), "--output", output.string(), path("small.rawlog")});
     EXPECT_EQ(result.status, 1);
     EXPECT_TRUE(contains(result.errors, output.string() + ": cannot write")) << result.errors;
     EXPECT_EQ(folder.read("file"), "of before");

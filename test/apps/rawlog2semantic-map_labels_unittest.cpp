@@ -1,7 +1,6 @@
 // Labels from images and networks, through the whole application.
 #include <labeled_cloud/Rawlogs.h>
 
-#include <fstream>
 #include <random>
 
 #include "CameraFixture.h"
@@ -16,9 +15,9 @@ TEST_F(CameraMapping, labelImagesOfACameraLabelTheScansOfAnotherSensor) {
 }
 
 TEST_F(CameraMapping, aFolderMayBelongToOneCamera) {
-  ASSERT_EQ(run("camera.rawlog", {"--labels", "front=" + (folder / "labels").string()}).status, 0);
+  ASSERT_EQ(run("camera.rawlog", {"--labels", "front=" + path("labels")}).status, 0);
   expectLabeledMap();
-  ASSERT_EQ(run("camera.rawlog", {"--labels", "rear=" + (folder / "labels").string()}).status, 0);
+  ASSERT_EQ(run("camera.rawlog", {"--labels", "rear=" + path("labels")}).status, 0);
   EXPECT_EQ(summary()["observations"]["insertedWithoutLabels"], 1);
   EXPECT_EQ(map().query(4.1, 1.1, 0.1).likeliestClass, 0);
 }
@@ -26,8 +25,7 @@ TEST_F(CameraMapping, aFolderMayBelongToOneCamera) {
 TEST_F(CameraMapping, aNetworkLabelsPicturesHardAndSoft) {
   for (const char* kind : {"soft", "hard"}) {
     configure(std::string("[labels]\nkind = ") + kind + "\n");
-    const ProgramRun result = run("camera.rawlog", network());
-    ASSERT_EQ(result.status, 0) << result.errors;
+    succeeded(run("camera.rawlog", network()));
     expectLabeledMap();
   }
 }
@@ -44,8 +42,7 @@ TEST_F(CameraMapping, tellsTheShareOfLabeledPointsAndWarnsBelowAHalf) {
   EXPECT_TRUE(contains(labeled.output, "100 % of 2 points have a label")) << labeled.output;
   EXPECT_FALSE(contains(labeled.output, "Warning")) << labeled.output;
   fs::rename(folder / "labels/10.01.png", folder / "labels/000000.png");  // read as 0 s
-  const ProgramRun misnamed = run("camera.rawlog", labels());
-  ASSERT_EQ(misnamed.status, 0) << misnamed.errors;
+  const ProgramRun misnamed = succeeded(run("camera.rawlog", labels()));
   EXPECT_TRUE(contains(misnamed.output, "0 % of 2 points have a label; 1 of 1 scans found none"))
       << misnamed.output;
   EXPECT_TRUE(contains(misnamed.output, "Warning: less than half")) << misnamed.output;
@@ -69,15 +66,14 @@ TEST_F(CameraMapping, confidencesAndAConfusionMatrixChangeTheBelief) {
   ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
   const auto belief = [this] { return map().query(4.1, 1.1, 0.1).probability; };
   const double plain = belief();
-  cv::imwrite((folder / "labels/10.01.confidence.png").string(),
-              cv::Mat(40, 40, CV_8UC1, cv::Scalar(128)));
+  cv::imwrite(path("labels/10.01.confidence.png"), cv::Mat(40, 40, CV_8UC1, cv::Scalar(128)));
   ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
   EXPECT_LT(belief(), plain);
   fs::remove(folder / "labels/10.01.confidence.png");
   folder.write("confusion.yaml",
                "classes: [road, grass, car]\nconfusion: [[60, 40, 0], [40, 60, 0], [0, 0, 9]]\n");
   auto arguments = labels();
-  arguments.insert(arguments.end(), {"--confusion", (folder / "confusion.yaml").string()});
+  arguments.insert(arguments.end(), {"--confusion", path("confusion.yaml")});
   ASSERT_EQ(run("camera.rawlog", arguments).status, 0);
   EXPECT_LT(belief(), plain);
 }
@@ -85,7 +81,7 @@ TEST_F(CameraMapping, confidencesAndAConfusionMatrixChangeTheBelief) {
 TEST_F(CameraMapping, theMapOfTheSavedLabelsIsTheSame) {
   for (const auto& source : {labels(), network()}) {
     auto arguments = source;
-    arguments.insert(arguments.end(), {"--save-labeled", (folder / "saved.rawlog").string()});
+    arguments.insert(arguments.end(), {"--save-labeled", path("saved.rawlog")});
     ASSERT_EQ(run("camera.rawlog", arguments).status, 0);
     const std::string direct = folder.read("out/map.semantic");
     ASSERT_EQ(run("saved.rawlog").status, 0);
@@ -115,7 +111,7 @@ TEST_F(CameraMapping, anExternalPictureIsReadFromTheFolderBesideTheRawlog) {
   writeSmallRawlog(folder / "camera.rawlog", robotPose(10, 0), unlabeledScan(10), external);
   expectRefusal({"'front' at 10.01", "front_1.png"}, "camera.rawlog", network());
   fs::create_directory(folder / "camera_Images");
-  cv::imwrite((folder / "camera_Images/front_1.png").string(), redAndBlue());
+  cv::imwrite(path("camera_Images/front_1.png"), redAndBlue());
   ASSERT_EQ(run("camera.rawlog", network()).status, 0);
   expectLabeledMap();
   configure("[labels]\nmatch = name\n");
@@ -126,7 +122,7 @@ TEST_F(CameraMapping, anExternalPictureIsReadFromTheFolderBesideTheRawlog) {
 
 TEST_F(CameraMapping, whatCannotBeUsedIsNamedOrLeftOutAndCounted) {
   const std::string skip = "[labels]\non_problem = skip\n";
-  cv::imwrite((folder / "labels/10.01.png").string(), cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
+  cv::imwrite(path("labels/10.01.png"), cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
   expectRefusal({"10.01.png", "20 x 20", "40 x 40"}, "camera.rawlog", labels());
   configure(skip);
   ASSERT_EQ(run("camera.rawlog", labels()).status, 0);
@@ -150,13 +146,13 @@ TEST_F(CameraMapping, badNetworksAndSourcesAreRefused) {
                 {arguments[0], arguments[1]});
   const auto both = [&] {
     auto all = arguments;
-    all.insert(all.end(), {"--labels", (folder / "labels").string()});
+    all.insert(all.end(), {"--labels", path("labels")});
     return all;
   };
   expectRefusal({"not from both"}, "camera.rawlog", both());
   folder.write("net.yaml", "input: {width: 40, height: 40}\nclasses: [road, car]\n");
   expectRefusal({"net.onnx", "answers 3 channels", "names 2 classes"}, "camera.rawlog", arguments);
-  arguments[1] = (folder / "none.onnx").string();
+  arguments[1] = path("none.onnx");
   expectRefusal({"none.onnx: there is no such network"}, "camera.rawlog", arguments);
   expectRefusal({"/none: there is no such folder"}, "camera.rawlog", {"--labels", "/none"});
   configure("[camera front]\nfx = 20\n");
@@ -176,8 +172,7 @@ TEST_F(Rawlog2SemanticMap, howFarLabelsAreTrustedIsTold) {
         scan.cloud.classes.push_back(semantic_types::ClassId(1 + (voxel + shift) % 3));
       }
     writeSmallRawlog(folder / "noisy.rawlog", robotPose(10, 1.1), scan);
-    const ProgramRun result = run("noisy.rawlog");
-    ASSERT_EQ(result.status, 0) << result.errors;
+    const ProgramRun result = succeeded(run("noisy.rawlog"));
     const std::string told = "agree as if 7";  // 70 %, within the prior's pull and rounding
     EXPECT_EQ(contains(result.output, told), wrong > 0) << result.output;
     EXPECT_NEAR(summary()["labels"]["accuracy"], wrong > 0 ? 0.72 : 0.93, 0.025);

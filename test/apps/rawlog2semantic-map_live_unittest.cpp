@@ -34,8 +34,7 @@ class LiveMapping : public Rawlog2SemanticMap {
     writeSmallRawlog(folder / "field.rawlog", robotPose(10, 0), onlyRoad, robotPose(11, 0.3),
                      scan(11), robotPose(12, 0.6), scan(12), robotPose(13, 0.9), scan(13));
   }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-  std::vector<std::string> arguments(const std::string& output) const {
+  Words arguments(const std::string& output) const {
     return {"--config", path("weights.ini"), "--output", path(output), path("field.rawlog")};
   }
 };
@@ -44,20 +43,13 @@ class LiveMapping : public Rawlog2SemanticMap {
 
 TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
   SKIP_WITHOUT_WINDOWS();
-  std::vector<std::string> command = {MSO_SOURCE_DIR "/test/apps/view-window.sh",
-                                      path("said.txt"),
-                                      kProgram,
-                                      "--live",
-                                      "--pause",
-                                      "-v"};
-  for (const std::string& argument : arguments("live")) command.push_back(argument);
   // In the panel at the upper left: "step", twice, and "pause", which lets it go on.
-  for (const std::string& step :
-       {std::string("--"), std::string("140 53 inserted"), std::string("140 53 inserted"),
-        "picture " + path("screen.png"), std::string("25 53 CSemanticOctoMap")})
-    command.push_back(step);
-  const ProgramRun live = runInX(command);
-  ASSERT_EQ(live.status, 0) << live.output << live.errors;
+  const ProgramRun live =
+      succeeded(runInX(joined({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"),
+                               kProgram, "--live", "--pause", "-v"},
+                              arguments("live"),
+                              {"--", "140 53 inserted", "140 53 inserted",
+                               "picture " + path("screen.png"), "25 53 CSemanticOctoMap"})));
   const cv::Mat screen = cv::imread(path("screen.png"));
   ASSERT_FALSE(screen.empty());
   int road = 0, car = 0;
@@ -68,8 +60,7 @@ TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
   EXPECT_GT(road, 3000);
   EXPECT_GT(car, 200) << "more than beside its name";
 
-  const ProgramRun without = runProgram("rawlog2semantic-map", arguments("without"));
-  EXPECT_EQ(without.status, 0) << without.errors;
+  const ProgramRun without = succeeded(runProgram("rawlog2semantic-map", arguments("without")));
   for (const std::string name : {"/map.semantic", "/compressed.semantic", "/top.png"})
     EXPECT_EQ(folder.read("live" + name), folder.read("without" + name)) << name;
 }
@@ -77,12 +68,11 @@ TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
 TEST_F(LiveMapping, ShowsTheCamerasPictureWithItsLabels) {
   SKIP_WITHOUT_WINDOWS();
   // The first scan of the sample is a camera's: half of its colors are those of the classes.
-  const ProgramRun live = runInX(
+  succeeded(runInX(
       {MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kProgram, "--live", "--pause",
        "-v", "--config", MSO_SOURCE_DIR "/config/maps/synthetic.ini", "-o", path("live"),
        MSO_SOURCE_DIR "/rawlog-samples/village.rawlog", "--", "140 53 'CAMERA'): inserted",
-       "140 53 'LIDAR'): inserted", "picture " + path("screen.png")});
-  ASSERT_EQ(live.status, 0) << live.output << live.errors;
+       "140 53 'LIDAR'): inserted", "picture " + path("screen.png")}));
   const cv::Mat screen = cv::imread(path("screen.png"));
   ASSERT_FALSE(screen.empty());
   int paper = 0, all = 0;
@@ -93,9 +83,9 @@ TEST_F(LiveMapping, ShowsTheCamerasPictureWithItsLabels) {
 }
 
 TEST_F(LiveMapping, IsAnErrorWithoutADisplay) {
-  std::vector<std::string> command = {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kProgram, "--live"};
-  for (const std::string& argument : arguments("live")) command.push_back(argument);
-  const ProgramRun run = runProgram("/usr/bin/env", command);
+  const ProgramRun run = runProgram(
+      "/usr/bin/env",
+      joined({"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kProgram, "--live"}, arguments("live")));
   EXPECT_EQ(run.status, 1);
   const char* const problem = hasWindows() ? "--live: there is no display" : "without windows";
   EXPECT_TRUE(contains(run.errors, problem)) << run.errors;
@@ -103,9 +93,7 @@ TEST_F(LiveMapping, IsAnErrorWithoutADisplay) {
 }
 
 TEST_F(LiveMapping, IsNeededForAPause) {
-  std::vector<std::string> command = arguments("live");
-  command.push_back("--pause");
-  const ProgramRun run = runProgram("rawlog2semantic-map", command);
+  const ProgramRun run = runProgram("rawlog2semantic-map", joined(arguments("live"), {"--pause"}));
   EXPECT_EQ(run.status, 64);
   EXPECT_TRUE(contains(run.errors, "--live")) << run.errors;
 }

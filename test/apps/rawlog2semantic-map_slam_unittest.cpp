@@ -86,21 +86,17 @@ double shareOccupiedIn(const SemanticOcTree& other, const SemanticOcTree& map) {
 TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
   const TemporaryFolder folder;
   const std::string rawlog = (folder / "park.rawlog").string();
-  const ProgramRun drive =
-      runProgram("synth-rawlog", {"-o", rawlog, "--scene", "park", "--sensor", "lidar", "--frames",
-                                  "235", "--rate", "1", "--speed", "1", "--rings", "32",
-                                  "--columns", "360", "--label-noise", "0.1"});
-  ASSERT_EQ(drive.status, 0) << drive.errors;
+  succeeded(runProgram("synth-rawlog", {"-o", rawlog, "--scene", "park", "--sensor", "lidar",
+                                        "--frames", "235", "--rate", "1", "--speed", "1", "--rings",
+                                        "32", "--columns", "360", "--label-noise", "0.1"}));
   const Poses truth = readPoses(folder.read("park.tum")), noisy = drifting(truth);
   const auto noisyFile = folder.write("noisy.tum", textOf(noisy));
-  const auto mapWith = [&](const fs::path& trajectory, const std::vector<std::string>& more) {
+  const auto mapWith = [&](const fs::path& trajectory, const Words& more) {
     const std::string out = (folder / "out").string();
-    std::vector<std::string> arguments = {
-        "-f",           "--output",          out,   "--resolution", "0.4", "--max-range", "20",
-        "--trajectory", trajectory.string(), rawlog};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramRun mapping = runProgram("rawlog2semantic-map", arguments);
-    EXPECT_EQ(mapping.status, 0) << mapping.errors;
+    succeeded(runProgram("rawlog2semantic-map",
+                         joined({"-f", "--output", out, "--resolution", "0.4", "--max-range", "20",
+                                 "--trajectory", trajectory.string(), rawlog},
+                                more)));
     return semantic_octree::loadTree(out + "/map.semantic");
   };
   const SemanticOcTree trueMap = mapWith(folder / "park.tum", {}), wrong = mapWith(noisyFile, {}),
@@ -134,17 +130,15 @@ struct Street {
   std::string rawlog = (folder / "street.rawlog").string();
 
   Street() {
-    const ProgramRun drive = runProgram(
-        "synth-rawlog", {"-o", rawlog, "--scene", "village", "--sensor", "lidar", "--frames", "50",
-                         "--rate", "1", "--speed", "1", "--rings", "32", "--columns", "360"});
-    EXPECT_EQ(drive.status, 0) << drive.errors;
+    succeeded(runProgram("synth-rawlog",
+                         {"-o", rawlog, "--scene", "village", "--sensor", "lidar", "--frames", "50",
+                          "--rate", "1", "--speed", "1", "--rings", "32", "--columns", "360"}));
   }
-  ProgramRun map(const std::string& output, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"-f",           "--output", (folder / output).string(),
-                                          "--resolution", "0.2",      "--max-range",
-                                          "20",           rawlog};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram("rawlog2semantic-map", arguments);
+  ProgramRun map(const std::string& output, const Words& more) const {
+    return runProgram("rawlog2semantic-map",
+                      joined({"-f", "--output", (folder / output).string(), "--resolution", "0.2",
+                              "--max-range", "20", rawlog},
+                             more));
   }
 };
 
@@ -162,9 +156,8 @@ TEST(Rawlog2SemanticMapWithSlam, bringsADriveIntoTheFrameOfAMap) {
                                   T_first.inverse();
   for (auto& [time, T] : odometry) T = T_off * T;
   const auto noisy = street.folder.write("noisy.tum", textOf(odometry)).string();
-  const ProgramRun run = street.map("after", {"--trajectory", noisy, "--slam", "--reference",
-                                              (street.folder / "before/map.semantic").string()});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  succeeded(street.map("after", {"--trajectory", noisy, "--slam", "--reference",
+                                 (street.folder / "before/map.semantic").string()}));
   const Poses corrected = readPoses(street.folder.read("after/trajectory.tum"));
   ASSERT_GT(corrected.size(), 40u);
   for (const auto& [time, T] : corrected) {
@@ -181,15 +174,13 @@ TEST(Rawlog2SemanticMapWithSlam, mapsIntoTilesWhatItMapsInMemoryAndFindsTheNextD
   const Poses truth = readPoses(street.folder.read("street.tum"));
   const auto noisy = street.folder.write("noisy.tum", textOf(drifting(truth))).string();
   const std::string tiles = (street.folder / "tiles").string();
-  const std::vector<std::string> intoTiles = {"--tiles", tiles,      "--tile-size",
-                                              "12.8",    "--memory", "0.1"};
-  const auto with = [&](std::vector<std::string> more, const std::string& trajectory) {
+  const Words intoTiles = {"--tiles", tiles, "--tile-size", "12.8", "--memory", "0.1"};
+  const auto with = [&](Words more, const std::string& trajectory) {
     more.insert(more.end(), {"--slam", "--trajectory", trajectory});
     return more;
   };
   ASSERT_EQ(street.map("plain", with({}, noisy)).status, 0);
-  const ProgramRun first = street.map("tiled", with(intoTiles, noisy));
-  ASSERT_EQ(first.status, 0) << first.errors;
+  succeeded(street.map("tiled", with(intoTiles, noisy)));
   EXPECT_TRUE(semantic_octree::loadMap(tiles) ==
               semantic_octree::loadTree((street.folder / "plain/map.semantic").string()));
   EXPECT_EQ(street.folder.read("tiled/trajectory.tum"), street.folder.read("plain/trajectory.tum"));
@@ -206,8 +197,7 @@ TEST(Rawlog2SemanticMapWithSlam, mapsIntoTilesWhatItMapsInMemoryAndFindsTheNextD
       << far.errors;
   EXPECT_EQ(semantic_octree::loadMap(tiles).getNumLeafNodes(), leaves);
 
-  const ProgramRun second = street.map("second", with(intoTiles, moved(0.7)));
-  ASSERT_EQ(second.status, 0) << second.errors;
+  const ProgramRun second = succeeded(street.map("second", with(intoTiles, moved(0.7))));
   EXPECT_NE(second.output.find("There is a map"), std::string::npos) << second.output;
   for (const auto& [time, T] : readPoses(street.folder.read("second/trajectory.tum")))
     EXPECT_LT(distance(T, std::prev(truth.upper_bound(time + 1e-4))->second), 0.15) << time;
@@ -227,13 +217,12 @@ TEST(Rawlog2SemanticMapWithSlam, mapsARawlogWithoutPoses) {
           archive << *observation;
   }
   const std::string out = (street.folder / "out").string();
-  const std::vector<std::string> arguments = {"--output",    out,  "--resolution", "0.2",
-                                              "--max-range", "20", bare.string()};
+  const Words arguments = {"--output",    out,  "--resolution", "0.2",
+                           "--max-range", "20", bare.string()};
   EXPECT_EQ(runProgram("rawlog2semantic-map", arguments).status, 1) << "it needs poses";
   auto slam = arguments;
   slam.emplace_back("--slam");
-  const ProgramRun run = runProgram("rawlog2semantic-map", slam);
-  ASSERT_EQ(run.status, 0) << run.errors;
+  succeeded(runProgram("rawlog2semantic-map", slam));
   const Poses truth = readPoses(street.folder.read("street.tum")),
               found = readPoses(street.folder.read("out/trajectory.tum"));
   ASSERT_EQ(found.size(), 50u);

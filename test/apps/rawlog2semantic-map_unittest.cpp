@@ -12,8 +12,7 @@ using semantic_octree::SemanticOcTree;
 namespace fs = std::filesystem;
 
 TEST_F(Rawlog2SemanticMap, scansBecomeAMapASummaryAndTwoPictures) {
-  const ProgramRun result = run();
-  ASSERT_EQ(result.status, 0) << result.errors;
+  succeeded(run());
   const SemanticOcTree tree = map();
   EXPECT_DOUBLE_EQ(tree.getResolution(), 0.5);
   EXPECT_EQ(tree.query(2.2, 0.2, 0.2).likeliestClass, 1);
@@ -48,11 +47,8 @@ TEST_F(Rawlog2SemanticMap, summaryCountsObservationsPointsAndVoxels) {
 TEST_F(Rawlog2SemanticMap, classesWithAHalfLifeAreForgottenByTheStamps) {
   const auto road = labeledCloud(18, {{1.1f, 0.2f, 0.2f}}, {1});
   writeSmallRawlog(folder / "later.rawlog", robotPose(18, 1.1), road);
-  const auto carAfter = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> options = {(folder / "small.rawlog").string()};
-    options.insert(options.end(), more.begin(), more.end());
-    const ProgramRun result = run("later.rawlog", options);
-    EXPECT_EQ(result.status, 0) << result.errors;
+  const auto carAfter = [&](const Words& more) {
+    succeeded(run("later.rawlog", joined({path("small.rawlog")}, more)));
     return map().query(0.1, 3, 0.2).status;
   };
   EXPECT_EQ(carAfter({}), CellState::Status::Occupied);
@@ -63,7 +59,7 @@ TEST_F(Rawlog2SemanticMap, classesWithAHalfLifeAreForgottenByTheStamps) {
   EXPECT_EQ(map().query(2.2, 0.2, 0.2).status, CellState::Status::Occupied);
   EXPECT_DOUBLE_EQ(map().clock(), 8);
   const semantic_octree::SemanticOcTree inMemory = map();
-  const std::string small = (folder / "small.rawlog").string(), tiles = (folder / "tiles").string();
+  const std::string small = path("small.rawlog"), tiles = path("tiles");
   EXPECT_EQ(run("later.rawlog", {small, "--tiles", tiles}).status, 0);
   EXPECT_TRUE(semantic_octree::loadMap(tiles) == inMemory);
   EXPECT_EQ(carAfter({"--slam"}), CellState::Status::Unknown);
@@ -76,8 +72,8 @@ TEST_F(Rawlog2SemanticMap, optionsOnTheCommandLineGoBeforeTheConfiguration) {
   folder.write("other.yaml",
                "classes:\n  - {id: 1, name: car, color: [1, 2, 3]}\n"
                "  - {id: 2, name: road, color: [1, 2, 4]}\n");
-  ASSERT_EQ(run("small.rawlog", {"--resolution", "0.25", "--max-range", "2", "--classes",
-                                 (folder / "other.yaml").string()})
+  ASSERT_EQ(run("small.rawlog",
+                {"--resolution", "0.25", "--max-range", "2", "--classes", path("other.yaml")})
                 .status,
             0);
   EXPECT_DOUBLE_EQ(map().getResolution(), 0.25);
@@ -90,14 +86,10 @@ TEST_F(Rawlog2SemanticMap, withoutAConfigurationTakesTheClassesThatTheRawlogName
   auto scan = smallScan(10);
   scan.classNames = {"tarmac", "lawn", "van"};
   writeSmallRawlog(folder / "named.rawlog", robotPose(10, 1.1), scan);
-  const auto build = [&](const std::string& rawlog, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {(folder / rawlog).string(), "-f", "-o",
-                                          (folder / "out").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram("rawlog2semantic-map", arguments);
+  const auto build = [&](const std::string& rawlog, const Words& more) {
+    return runProgram("rawlog2semantic-map", joined({path(rawlog), "-f", "-o", path("out")}, more));
   };
-  ProgramRun result = build("named.rawlog", {});
-  ASSERT_EQ(result.status, 0) << result.errors;
+  ProgramRun result = succeeded(build("named.rawlog", {}));
   SemanticOcTree tree = map();
   EXPECT_EQ(tree.numClasses(), 3);
   EXPECT_EQ(tree.classes().name(tree.query(2.2, 0.2, 0.2).likeliestClass), "tarmac");
@@ -119,10 +111,8 @@ TEST_F(Rawlog2SemanticMap, ofMrptsOwnSamplesWithoutPosesOrLabelsIsAMapOfOccupanc
   for (const char* name : {"tests_rgbd.rawlog", "test_velodyne_VLP16.rawlog"}) {
     const fs::path rawlog = fs::path("/usr/share/mrpt/datasets") / name;
     if (!fs::exists(rawlog)) GTEST_SKIP() << "no " << rawlog << " here";
-    const ProgramRun result =
-        runProgram("rawlog2semantic-map", {rawlog.string(), "--static-pose", "--resolution", "0.2",
-                                           "-f", "-o", (folder / "out").string()});
-    ASSERT_EQ(result.status, 0) << result.errors;
+    succeeded(runProgram("rawlog2semantic-map", {rawlog.string(), "--static-pose", "--resolution",
+                                                 "0.2", "-f", "-o", path("out")}));
     EXPECT_GT(contentsOf(map()).occupiedVoxels, 200u) << name;
     EXPECT_EQ(map().numClasses(), 1);
   }
@@ -130,7 +120,7 @@ TEST_F(Rawlog2SemanticMap, ofMrptsOwnSamplesWithoutPosesOrLabelsIsAMapOfOccupanc
 
 TEST_F(Rawlog2SemanticMap, severalRawlogsMakeOneMap) {
   writeSmallRawlog(folder / "more.rawlog", robotPose(11, 5.1), smallScan(11));
-  ASSERT_EQ(run("more.rawlog", {(folder / "small.rawlog").string()}).status, 0);
+  ASSERT_EQ(run("more.rawlog", {path("small.rawlog")}).status, 0);
   EXPECT_EQ(map().query(2.2, 0.2, 0.2).likeliestClass, 1);
   EXPECT_EQ(map().query(6.2, 0.2, 0.2).likeliestClass, 1);
   EXPECT_EQ(summary()["rawlogs"].size(), 2u);
@@ -138,8 +128,7 @@ TEST_F(Rawlog2SemanticMap, severalRawlogsMakeOneMap) {
 
 TEST_F(Rawlog2SemanticMap, whatLiesOutsideTheTrajectoryIsSkippedAndCounted) {
   writeSmallRawlog(folder / "late.rawlog", robotPose(10, 1.1), smallScan(10), smallScan(20));
-  const ProgramRun result = run("late.rawlog");
-  ASSERT_EQ(result.status, 0) << result.errors;
+  const ProgramRun result = succeeded(run("late.rawlog"));
   EXPECT_EQ(summary()["observations"]["inserted"], 1);
   EXPECT_EQ(summary()["observations"]["skipped"]["outside the trajectory"], 1);
   EXPECT_TRUE(contains(result.output, "1 outside the trajectory")) << result.output;
@@ -147,7 +136,7 @@ TEST_F(Rawlog2SemanticMap, whatLiesOutsideTheTrajectoryIsSkippedAndCounted) {
 
 TEST_F(Rawlog2SemanticMap, aTrajectoryFileGoesBeforeTheRawlogsPoses) {
   folder.write("poses.tum", "9 3.1 0 0 0 0 0 1\n11 5.1 0 0 0 0 0 1\n");
-  ASSERT_EQ(run("small.rawlog", {"--trajectory", (folder / "poses.tum").string()}).status, 0);
+  ASSERT_EQ(run("small.rawlog", {"--trajectory", path("poses.tum")}).status, 0);
   EXPECT_EQ(map().query(5.2, 0.2, 0.2).likeliestClass, 1);
   EXPECT_EQ(map().query(2.2, 0.2, 0.2).status, CellState::Status::Unknown);
 }
@@ -155,7 +144,7 @@ TEST_F(Rawlog2SemanticMap, aTrajectoryFileGoesBeforeTheRawlogsPoses) {
 TEST_F(Rawlog2SemanticMap, posesOfKittiBelongToTheScansInTheirOrder) {
   writeSmallRawlog(folder / "two.rawlog", smallScan(10), smallScan(11));
   folder.write("poses.txt", "1 0 0 4.1 0 1 0 0 0 0 1 0\n0 -1 0 6.1 1 0 0 0 0 0 1 0\n");
-  ASSERT_EQ(run("two.rawlog", {"--trajectory", (folder / "poses.txt").string()}).status, 0);
+  ASSERT_EQ(run("two.rawlog", {"--trajectory", path("poses.txt")}).status, 0);
   EXPECT_EQ(map().query(5.2, 0.2, 0.2).likeliestClass, 1);
   EXPECT_EQ(map().query(5.9, 1.1, 0.2).likeliestClass, 1) << "turned to the left";
   EXPECT_EQ(map().query(2.2, 0.2, 0.2).status, CellState::Status::Unknown);
@@ -165,9 +154,8 @@ TEST_F(Rawlog2SemanticMap, depthImagesTakeTheirLabelsFromAFolder) {
   writeSmallRawlog(folder / "depth.rawlog", robotPose(10, 0), depthImage(10, 40, 40),
                    robotPose(11, 0), depthImage(11, 40, 40));
   fs::create_directory(folder / "labels");
-  cv::imwrite((folder / "labels/10.00.png").string(), cv::Mat(40, 40, CV_8UC1, cv::Scalar(2)));
-  const ProgramRun result = run("depth.rawlog", {"--labels", (folder / "labels").string()});
-  ASSERT_EQ(result.status, 0) << result.errors;
+  cv::imwrite(path("labels/10.00.png"), cv::Mat(40, 40, CV_8UC1, cv::Scalar(2)));
+  succeeded(run("depth.rawlog", {"--labels", path("labels")}));
   EXPECT_EQ(map().query(2.1, 0.2, 0.2).likeliestClass, 2);
   EXPECT_EQ(summary()["observations"]["inserted"], 2);
   EXPECT_EQ(summary()["observations"]["insertedWithoutLabels"], 1);

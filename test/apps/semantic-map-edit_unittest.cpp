@@ -8,7 +8,6 @@
 #include <yaml-cpp/yaml.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <array>
 #include <filesystem>
@@ -18,24 +17,16 @@
 
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
-using semantic_types::ClassTable;
 
 namespace {
 
 class SemanticMapEdit : public MapTool {
  protected:
-  ProgramRun edit(const std::string& in, const std::string& out,
-                  const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments = {path(in), "-o", path(out)};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return runProgram("semantic-map-edit", arguments);
+  ProgramRun edit(const std::string& in, const std::string& out, const Words& options = {}) const {
+    return runProgram("semantic-map-edit", joined({path(in), "-o", path(out)}, options));
   }
-  SemanticOcTree edited(const std::vector<std::string>& options,
-                        const std::string& in = "map.semantic") const {
-    std::vector<std::string> all = options;
-    all.push_back("-f");
-    const ProgramRun run = edit(in, "out.semantic", all);
-    EXPECT_EQ(run.status, 0) << run.errors;
+  SemanticOcTree edited(const Words& options, const std::string& in = "map.semantic") const {
+    succeeded(edit(in, "out.semantic", joined(options, {"-f"})));
     return semantic_octree::loadMap(path("out.semantic"));
   }
 };
@@ -104,7 +95,7 @@ TEST_F(SemanticMapEdit, tilesAreAFolderWithTheMapInIt) {
 }
 
 TEST_F(SemanticMapEdit, tilesAreNotWrittenOverUnlessThatIsWanted) {
-  std::vector<std::string> all = {"--tiles", "102.4"};
+  Words all = {"--tiles", "102.4"};
   ASSERT_EQ(edit("map.semantic", "tiles", all).status, 0);
   expectRefusal(edit("map.semantic", "tiles", all), {"tiles/index.yaml", "--overwrite"});
   all.insert(all.end(), {"--box", "0", "0", "0", "1", "1", "1"});
@@ -132,9 +123,8 @@ TEST_F(SemanticMapEdit, colorsOfOurOwnOctreesBecomeClassesAgain) {
   }
   EXPECT_GT(withClass, 100);
   // Every program that reads maps reads it.
-  const ProgramRun asked = runProgram(
-      "semantic-map-merge", {path("color.ot"), path("out.semantic"), "-o", path("sum.semantic")});
-  EXPECT_EQ(asked.status, 0) << asked.errors;
+  succeeded(runProgram("semantic-map-merge",
+                       {path("color.ot"), path("out.semantic"), "-o", path("sum.semantic")}));
 }
 
 TEST_F(SemanticMapEdit, octomapsFilesBecomeOccupancy) {

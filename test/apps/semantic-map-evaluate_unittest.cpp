@@ -41,7 +41,7 @@ SemanticOcTree smallMap(const ClassTable& table = roadGrassCar()) {
 }
 
 /** The small map, and scans that ask for it. */
-class SemanticMapEvaluate : public testing::Test {
+class SemanticMapEvaluate : public FolderTest {
  protected:
   void SetUp() override {
     saveTree(smallMap(), file("map.semantic"));
@@ -49,14 +49,13 @@ class SemanticMapEvaluate : public testing::Test {
                      labeledCloud(10, {{4.2f, 0.4f, 0.3f}, {6.2f, 0.4f, 0.3f}, {4.1f, 0.3f, 0.2f}},
                                   {1, 3, kNoClass}));
   }
-  std::string file(const std::string& name) const { return (folder / name).string(); }
-  ProgramRun evaluate(std::vector<std::string> arguments) const {
+  std::string file(const std::string& name) const { return path(name); }
+  ProgramRun evaluate(Words arguments) const {
     arguments.insert(arguments.end(), {"--output", file("out")});
     return runProgram("semantic-map-evaluate", arguments);
   }
-  json reportOf(const std::vector<std::string>& arguments) const {
-    const ProgramRun run = evaluate(arguments);
-    EXPECT_EQ(run.status, 0) << run.errors;
+  json reportOf(const Words& arguments) const {
+    succeeded(evaluate(arguments));
     return json::parse(folder.read("out/quality.json"));
   }
   void expectRefusal(const ProgramRun& run, const std::string& part) const {
@@ -64,8 +63,6 @@ class SemanticMapEvaluate : public testing::Test {
     EXPECT_TRUE(contains(run.errors, part)) << part << " is not in: " << run.errors;
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
   }
-
-  TemporaryFolder folder;
 };
 
 }  // namespace
@@ -138,9 +135,8 @@ TEST(LabelCounts, statesTheMeanOfADirichletDistributionOfLabelsOrOfScans) {
 }
 
 TEST_F(SemanticMapEvaluate, tellsInATableWhatMapsAndCountingKnow) {
-  const ProgramRun run = evaluate(
-      {file("map.semantic"), "--scans", file("scans.rawlog"), "--made-from", file("scans.rawlog")});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  const ProgramRun run = succeeded(evaluate({file("map.semantic"), "--scans", file("scans.rawlog"),
+                                             "--made-from", file("scans.rawlog")}));
   EXPECT_TRUE(contains(run.output, "map: 100.0 % of 2 points lie in occupied voxels; 50.0 % of"))
       << run.output;
   for (const char* line : {"\nmap ", "\nlabels counted ", "\nscans counted "})
@@ -178,9 +174,8 @@ TEST_F(SemanticMapEvaluate, comparesMapsAndTakesRangeAndNeighbors) {
 TEST_F(SemanticMapEvaluate, callsMapsOfOneNameByTheirPathsAndDoubtsThoseOfOtherPlaces) {
   std::filesystem::create_directory(file("other"));
   saveTree(SemanticOcTree(1.0, roadGrassCar()), file("other/map.semantic"));
-  const ProgramRun run =
-      evaluate({file("map.semantic"), file("other/map.semantic"), "--scans", file("scans.rawlog")});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  const ProgramRun run = succeeded(evaluate(
+      {file("map.semantic"), file("other/map.semantic"), "--scans", file("scans.rawlog")}));
   const json both = json::parse(folder.read("out/quality.json"));
   EXPECT_EQ(both[file("map")]["coverage"], 1);
   EXPECT_TRUE(contains(run.output, file("other/map") + ": only 0 % of the points are in the map"));
@@ -193,9 +188,8 @@ TEST_F(SemanticMapEvaluate, namesAreNoCommandsForGnuplot) {
   for (const char* map : {"a'\n!touch x\n.semantic", "`touch x`.semantic"})
     for (const char* output : {"|touch x", "b'\n!touch x\n"}) {
       saveTree(smallMap(), map);
-      const ProgramRun run =
-          runProgram("semantic-map-evaluate", {map, "--scans", "scans.rawlog", "-f", "-o", output});
-      EXPECT_EQ(run.status, 0) << run.errors;
+      succeeded(runProgram("semantic-map-evaluate",
+                           {map, "--scans", "scans.rawlog", "-f", "-o", output}));
       EXPECT_FALSE(cv::imread(std::string(output) + "/reliability.png").empty()) << output;
     }
   EXPECT_FALSE(std::filesystem::exists("x"));

@@ -34,25 +34,23 @@ SemanticOcTree yard() {
   return map;
 }
 
-class CostExport : public testing::Test {
+class CostExport : public FolderTest {
  protected:
   void SetUp() override {
-    saveTree(yard(), (folder / "map.semantic").string());
+    saveTree(yard(), path("map.semantic"));
     folder.write("order.yaml", "best_to_worst: [road, grass]\n");
     folder.write("vehicle.yaml",
                  "footprint: [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]\nclearance: 0\n");
   }
-  ProgramRun costs(const std::string& name, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {(folder / "map.semantic").string(), "-o",
-                                          (folder / name).string(), "--costs",
-                                          (folder / "order.yaml").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram("semantic-map-export", arguments);
+  ProgramRun costs(const std::string& name, const Words& more) {
+    return runProgram(
+        "semantic-map-export",
+        joined({path("map.semantic"), "-o", path(name), "--costs", path("order.yaml")}, more));
   }
-  std::string vehicle() const { return (folder / "vehicle.yaml").string(); }
+  std::string vehicle() const { return path("vehicle.yaml"); }
   /** The pixel where a place is, by what the description says. */
   cv::Vec4b pixel(const std::string& name, double x, double y) const {
-    const YAML::Node node = YAML::LoadFile((folder / name).string());
+    const YAML::Node node = YAML::LoadFile(path(name));
     cv::Mat picture =
         cv::imread((folder / node["image"].as<std::string>()).string(), cv::IMREAD_UNCHANGED);
     const double resolution = node["resolution"].as<double>();
@@ -63,8 +61,6 @@ class CostExport : public testing::Test {
     if (picture.channels() == 4) return picture.at<cv::Vec4b>(row, column);
     return {picture.at<std::uint8_t>(row, column), 0, 0, 255};
   }
-
-  TemporaryFolder folder;
 };
 
 struct Place {
@@ -79,17 +75,16 @@ const std::vector<Place> kPlaces = {
 }  // namespace
 
 TEST_F(CostExport, rawPicturesHoldTheCostsThemselves) {
-  const ProgramRun run = costs("raw.yaml", {"--vehicle", vehicle(), "--mode", "raw"});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  const ProgramRun run = succeeded(costs("raw.yaml", {"--vehicle", vehicle(), "--mode", "raw"}));
   EXPECT_TRUE(contains(run.output, "raw.pgm")) << run.output;
   for (const Place& p : kPlaces)
     EXPECT_EQ(pixel("raw.yaml", p.x, p.y)[0], p.cost < 0 ? 255 : p.cost) << p.x << ' ' << p.y;
-  EXPECT_EQ(YAML::LoadFile((folder / "raw.yaml").string())["mode"].as<std::string>(), "raw");
+  EXPECT_EQ(YAML::LoadFile(path("raw.yaml"))["mode"].as<std::string>(), "raw");
 }
 
 TEST_F(CostExport, scaledPicturesHoldThemAsShadesAndWhatIsUnknownIsTransparent) {
   ASSERT_EQ(costs("s.yaml", {"--vehicle", vehicle(), "--mode", "scale"}).status, 0);
-  const YAML::Node node = YAML::LoadFile((folder / "s.yaml").string());
+  const YAML::Node node = YAML::LoadFile(path("s.yaml"));
   const double occupied = node["occupied_thresh"].as<double>(),
                free = node["free_thresh"].as<double>();
   for (const Place& p : kPlaces) {
@@ -105,8 +100,7 @@ TEST_F(CostExport, scaledPicturesHoldThemAsShadesAndWhatIsUnknownIsTransparent) 
 
 TEST_F(CostExport, mrptReadsThePictureOfThreeValues) {
   ASSERT_EQ(costs("t.yaml", {"--vehicle", vehicle()}).status, 0);
-  const auto grid =
-      mrpt::maps::COccupancyGridMap2D::FromROSMapServerYAML((folder / "t.yaml").string());
+  const auto grid = mrpt::maps::COccupancyGridMap2D::FromROSMapServerYAML(path("t.yaml"));
   for (const Place& p : kPlaces) {
     const float free = grid.getPos(float(p.x), float(p.y));
     if (p.cost < 0)
@@ -126,12 +120,12 @@ TEST_F(CostExport, badInputIsRefusedByName) {
   const ProgramRun grey = costs("a.yaml", {"--mode", "grey"});
   EXPECT_EQ(grey.status, 64);
   EXPECT_TRUE(contains(grey.errors, "unknown value 'grey'")) << grey.errors;
-  expectRefusal(costs("a.yaml", {"--vehicle", (folder / "gone.yaml").string()}), {"gone.yaml"});
+  expectRefusal(costs("a.yaml", {"--vehicle", path("gone.yaml")}), {"gone.yaml"});
   folder.write("order.yaml", "best_to_worst: [rod]\n");
   expectRefusal(costs("a.yaml", {}), {"order.yaml", "'rod'"});
   folder.write("order.yaml", "best_to_worst: [road]\n");
   SemanticOcTree air(0.2, yard().classes());
-  saveTree(air, (folder / "map.semantic").string());
+  saveTree(air, path("map.semantic"));
   expectRefusal(costs("a.yaml", {}), {"a.yaml", "no drivable ground"});
   EXPECT_FALSE(std::filesystem::exists(folder / "a.yaml"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.pgm"));

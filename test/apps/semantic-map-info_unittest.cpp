@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "RunProgram.h"
-#include "ShellCommand.h"
 #include "TemporaryFolder.h"
 
 using semantic_octree::SemanticOcTree;
@@ -16,7 +15,7 @@ using semantic_types::LabeledCloud;
 namespace {
 
 /** A map of one ray along x that ends in grass at (3.75, 0.25, 0.25), voxels of 0.5 m. */
-class SemanticMapInfo : public testing::Test {
+class SemanticMapInfo : public FolderTest {
  protected:
   void SetUp() override {
     ClassTable table;
@@ -32,23 +31,12 @@ class SemanticMapInfo : public testing::Test {
     saveTree(tree, map());
   }
 
-  std::string map() const { return (folder / "map.semantic").string(); }
+  std::string map() const { return path("map.semantic"); }
 
   ProgramRun query(const std::string& points) const {
     folder.write("points.txt", points);
-    return runProgram("semantic-map-info", {map(), "--query", (folder / "points.txt").string()});
+    return runProgram("semantic-map-info", {map(), "--query", path("points.txt")});
   }
-
-  void expectRefusal(const ProgramRun& run, const std::vector<std::string>& parts) const {
-    EXPECT_EQ(run.status, 1);
-    EXPECT_EQ(run.output, "");
-    EXPECT_TRUE(contains(run.errors, "semantic-map-info: ")) << run.errors;
-    EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
-    for (const std::string& part : parts)
-      EXPECT_TRUE(contains(run.errors, part)) << part << " is not in: " << run.errors;
-  }
-
-  TemporaryFolder folder;
   double m_probability, m_occupancy;
 };
 
@@ -76,8 +64,7 @@ TEST_F(SemanticMapInfo, saysTheClockAndTheHalfLives) {
 }
 
 TEST_F(SemanticMapInfo, jsonHoldsWhatIsInTheMap) {
-  const ProgramRun run = runProgram("semantic-map-info", {map(), "--json"});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  const ProgramRun run = succeeded(runProgram("semantic-map-info", {map(), "--json"}));
   const auto json = nlohmann::json::parse(run.output);
   EXPECT_EQ(json["resolution"], 0.5);
   EXPECT_EQ(json["freeVoxels"], 7);
@@ -95,16 +82,15 @@ TEST_F(SemanticMapInfo, jsonHoldsWhatIsInTheMap) {
 }
 
 TEST_F(SemanticMapInfo, textNamesResolutionSpaceAndClasses) {
-  const ProgramRun run = runProgram("semantic-map-info", {map()});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  const ProgramRun run = succeeded(runProgram("semantic-map-info", {map()}));
   for (const char* part : {"0.5 m", "x 0 to 4,", "1 occupied, 7 free", "tall grass"})
     EXPECT_TRUE(contains(run.output, part)) << part << " is not in: " << run.output;
   EXPECT_FALSE(contains(run.output, "road")) << run.output;
 }
 
 TEST_F(SemanticMapInfo, pointsAreAnsweredWithStateClassAndOccupancy) {
-  const ProgramRun run = query("3.6 0.1 0.2\n\n# free:\n1.1 0.2 0.3  # here\n9 -9 9\n1e9 0 0\n");
-  ASSERT_EQ(run.status, 0) << run.errors;
+  const ProgramRun run =
+      succeeded(query("3.6 0.1 0.2\n\n# free:\n1.1 0.2 0.3  # here\n9 -9 9\n1e9 0 0\n"));
   std::istringstream lines(run.output);
   double x, y, z, probability, occupancy;
   std::string state, tall, grass;
@@ -137,8 +123,8 @@ TEST_F(SemanticMapInfo, pointsOfTheCommandLineAndOfTheStandardInputAreAnsweredAl
 }
 
 TEST_F(SemanticMapInfo, theDistributionAtAPointHasAllClassesAndFreeSpace) {
-  const std::vector<std::string> arguments = {map(),    "--at",           "3.6,0.1,0.2", "--at",
-                                              "9,-9,9", "--distribution", "--json"};
+  const Words arguments = {map(),    "--at",           "3.6,0.1,0.2", "--at",
+                           "9,-9,9", "--distribution", "--json"};
   const auto answers = nlohmann::json::parse(runProgram("semantic-map-info", arguments).output);
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(answers[0]["class"], "tall grass");
@@ -163,11 +149,10 @@ TEST_F(SemanticMapInfo, linesThatAreNoPointsAreRefusedByNumber) {
 }
 
 TEST_F(SemanticMapInfo, missingFilesAreRefusedByName) {
-  expectRefusal(runProgram("semantic-map-info", {(folder / "none.semantic").string()}),
-                {"none.semantic"});
+  expectRefusal(runProgram("semantic-map-info", {path("none.semantic")}), {"none.semantic"});
   expectRefusal(runProgram("semantic-map-info", {folder.path().string()}),
                 {folder.path().string() + ": is a folder of results; did you mean '" + map()});
-  expectRefusal(runProgram("semantic-map-info", {map(), "--query", (folder / "none.txt").string()}),
+  expectRefusal(runProgram("semantic-map-info", {map(), "--query", path("none.txt")}),
                 {"none.txt"});
 }
 
@@ -175,11 +160,10 @@ TEST_F(SemanticMapInfo, namesDoNotReachATerminalAsTheyAre) {
   const std::string name =
       "map\x1b[2J\n\xC2\x9B"
       "1m.semantic";
-  const ProgramRun missing = runProgram("semantic-map-info", {(folder / name).string()});
+  const ProgramRun missing = runProgram("semantic-map-info", {path(name)});
   expectRefusal(missing, {"map\\x1b[2J\\x0a\\xc2\\x9b1m.semantic"});
   std::filesystem::rename(map(), folder / name);
-  const ProgramRun run = runProgram("semantic-map-info", {(folder / name).string()});
-  EXPECT_EQ(run.status, 0);
+  const ProgramRun run = succeeded(runProgram("semantic-map-info", {path(name)}));
   EXPECT_TRUE(contains(run.output, "map\\x1b[2J")) << run.output;
   EXPECT_FALSE(contains(run.output, "\x1b"));
   EXPECT_FALSE(contains(run.output, "\xC2\x9B"));

@@ -5,7 +5,7 @@ using semantic_octree::SemanticOcTree;
 namespace {
 
 /** Ten maps of one scan each. */
-class SemanticMapMerge : public testing::Test {
+class SemanticMapMerge : public FolderTest {
  protected:
   static constexpr int kMaps = 10;
 
@@ -13,26 +13,20 @@ class SemanticMapMerge : public testing::Test {
     for (int i = 0; i < kMaps; ++i) saveTree(smallPlace(i, 1), path(name(i)));
   }
   static std::string name(int i) { return "scan" + std::to_string(i) + ".semantic"; }
-  std::string path(const std::string& file) const { return (folder / file).string(); }
 
-  ProgramRun merge(const std::vector<std::string>& names, const std::string& out,
-                   const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments;
-    for (const std::string& map : names) arguments.push_back(path(map));
-    arguments.insert(arguments.end(), {"-o", path(out), "-f"});
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return runProgram("semantic-map-merge", arguments);
+  ProgramRun merge(const Words& names, const std::string& out, const Words& options = {}) const {
+    Words maps;
+    for (const std::string& map : names) maps.push_back(path(map));
+    return runProgram("semantic-map-merge", joined(maps, {"-o", path(out), "-f"}, options));
   }
-  std::vector<std::string> all() const {
-    std::vector<std::string> names;
+  Words all() const {
+    Words names;
     for (int i = 0; i < kMaps; ++i) names.push_back(name(i));
     return names;
   }
   SemanticOcTree load(const std::string& file) const {
     return semantic_octree::loadMap(path(file));
   }
-
-  TemporaryFolder folder;
 };
 
 }  // namespace
@@ -81,11 +75,10 @@ TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {
 }
 
 TEST_F(SemanticMapMerge, posesThatMakeNoSenseAreRefusedByLine) {
-  const auto refuse = [&](const std::string& line, const std::vector<std::string>& parts) {
+  const auto refuse = [&](const std::string& line, const Words& parts) {
     folder.write("poses.txt", "# poses\n" + line + "\n");
-    std::vector<std::string> all = {"poses.txt:2"};
-    all.insert(all.end(), parts.begin(), parts.end());
-    expectRefusal(merge({name(0), name(1)}, "out.semantic", {"--poses", path("poses.txt")}), all);
+    expectRefusal(merge({name(0), name(1)}, "out.semantic", {"--poses", path("poses.txt")}),
+                  joined({"poses.txt:2"}, parts));
   };
   refuse("scan0.semantic 1 2 3", {"yaw pitch roll"});
   refuse("scan0.semantic 1 2 3 4 5 6 7", {"yaw pitch roll"});

@@ -1,45 +1,37 @@
 #include <gtest/gtest.h>
+#include <map_folders/MapFolder.h>
+#include <map_operations/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
+
 #include "../semantic_planning/PaintedWorld.h"
 #include "RunProgram.h"
-#include "ShellCommand.h"
 #include "TemporaryFolder.h"
 
 namespace {
 
 /** A folder with a map of a road along x in grass, a wall in the grass, and an order of classes. */
-class SemanticMapPlan : public testing::Test {
+class SemanticMapPlan : public FolderTest {
  protected:
   void SetUp() override {
     PaintedWorld world;
     world.floor(-10, 10, -6, 6, PaintedWorld::Grass);
     world.floor(-10, 10, -2, 2, PaintedWorld::Road);
     world.box(-2, 2, 4, 4.4, 0, 2, PaintedWorld::Wall);
-    semantic_octree::saveTree(world.map(), (folder / "map.semantic").string());
+    semantic_octree::saveTree(world.map(), path("map.semantic"));
     folder.write("order.yaml", "best_to_worst: [road, grass, mud]\n");
   }
 
-  ProgramRun run(const std::string& start, const std::string& goal,
-                 const std::vector<std::string>& more = {},
+  ProgramRun run(const std::string& start, const std::string& goal, const Words& more = {},
                  const std::string& order = "order.yaml") const {
-    std::vector<std::string> arguments = {(folder / "map.semantic").string(),
-                                          "--start=" + start,
-                                          "--goal=" + goal,
-                                          "--order",
-                                          (folder / order).string(),
-                                          "--output",
-                                          (folder / "out").string(),
-                                          "--vertices",
-                                          "200",
-                                          "-f"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram("semantic-map-plan", arguments);
+    return runProgram("semantic-map-plan",
+                      joined({path("map.semantic"), "--start=" + start, "--goal=" + goal, "--order",
+                              path(order), "--output", path("out"), "--vertices", "200", "-f"},
+                             more));
   }
   nlohmann::json report() const { return nlohmann::json::parse(folder.read("out/path.json")); }
 
@@ -49,15 +41,12 @@ class SemanticMapPlan : public testing::Test {
     EXPECT_TRUE(contains(result.errors, part)) << result.errors;
     EXPECT_FALSE(std::filesystem::exists(folder / "out/path.json"));
   }
-
-  TemporaryFolder folder;
 };
 
 }  // namespace
 
 TEST_F(SemanticMapPlan, writesPathReportPictureAndScene) {
-  const ProgramRun result = run("-8,0,0", "8,0,0");
-  ASSERT_EQ(result.status, 0) << result.errors;
+  succeeded(run("-8,0,0", "8,0,0"));
   EXPECT_EQ(report()["status"], "found");
   EXPECT_EQ(report()["lengthPerClass"].size(), 1u);
   EXPECT_GE(report()["lengthPerClass"]["road"], 16);
@@ -76,7 +65,7 @@ TEST_F(SemanticMapPlan, drawsWhatIsDrivenBackwardInAColorOfItsOwn) {
   const auto orange = [&](const std::string& goal, const std::string& gear) {
     EXPECT_EQ(run("0,0,0", goal).status, 0);
     EXPECT_TRUE(contains(folder.read("out/path.csv"), gear)) << goal;
-    const cv::Mat picture = cv::imread((folder / "out/plan.png").string());
+    const cv::Mat picture = cv::imread(path("out/plan.png"));
     cv::Mat is;
     cv::inRange(picture, cv::Scalar(0, 159, 230), cv::Scalar(0, 159, 230), is);
     return cv::countNonZero(is);
@@ -93,8 +82,8 @@ TEST_F(SemanticMapPlan, writesTheRoadmapForApplicationsOfMrpt) {
   EXPECT_TRUE(contains(graph, " | class grass\n"));
   if (!std::filesystem::exists("/usr/bin/graph-slam"))
     GTEST_SKIP() << "needs graph-slam (mrpt-apps)";
-  const CommandRun info = runCommand("/usr/bin/graph-slam --2d --info -i '" +
-                                     (folder / "out/roadmap.graph").string() + "'");
+  const ProgramRun info =
+      runCommand("/usr/bin/graph-slam --2d --info -i '" + path("out/roadmap.graph") + "'");
   EXPECT_EQ(info.status, 0) << info.output;
   EXPECT_TRUE(contains(info.output, "202")) << info.output;
 }
@@ -141,4 +130,61 @@ TEST_F(SemanticMapPlan, badInputIsAnErrorThatNamesIt) {
   expectError(run("-8,0,0", "8,0,0", {"--vehicle", vehicle.string()}), "turning_radius is 0");
   folder.write("map.semantic", "no map");
   expectError(run("-8,0,0", "8,0,0"), "map.semantic");
+}
+
+namespace {
+
+using namespace semantic_octree;
+
+/** A road of 600 m between lawns, with much air above it. */
+class PlanOfALongRoad : public FolderTest {
+ protected:
+  static constexpr double kHalf = 300, kPiece = 20;  // m
+
+  void SetUp() override {
+    PaintedWorld world;
+    for (double x = -kHalf; x < kHalf; x += kPiece) {
+      world.floor(x, x + kPiece, -15, 15, PaintedWorld::Grass);
+      world.floor(x, x + kPiece, -3, 3, PaintedWorld::Road);
+      world.map({x + kPiece / 2, 0.05, 20});
+    }
+    const SemanticOcTree& map = world.map();
+    saveTree(map, path("map.semantic"));
+    StoredMap tiles(emptyLike(map), path("tiles"), {500, 12.8});
+    copyTo(tiles.tree(), map);
+    tiles.folder()->save();
+    m_megabytes = static_cast<double>(map.memoryUsage()) / 1e6;
+    folder.write("order.yaml", "best_to_worst: [road, grass, mud]\n");
+  }
+
+  /** \return MB at its peak */
+  double plan(const std::string& map, const std::string& start, const std::string& goal,
+              const Words& more) const {
+    const ProgramRun run = succeeded(runProgram(
+        "semantic-map-plan", joined({path(map), "--start=" + start, "--goal=" + goal, "--order",
+                                     path("order.yaml"), "--output", path("out"), "-f"},
+                                    more)));
+    return static_cast<double>(run.peakKilobytes) / 1e3;
+  }
+  double m_megabytes = 0;  ///< of the map in memory
+};
+
+}  // namespace
+
+TEST_F(PlanOfALongRoad, keepsWithinABudgetOfATenthOfTheMap) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes memory of its own";
+#endif
+  const std::string budget = std::to_string(m_megabytes / 10);
+  const Words narrow = {"--corridor", "6", "--vertices", "2000"};
+  Words within = narrow;
+  within.insert(within.end(), {"--memory", budget});
+  const double least = plan("tiles", "-295,0,0", "-290,0,0", within);
+  const double peak = plan("tiles", "-295,0,0", "295,0,0", within);
+  const std::string way = folder.read("out/path.csv");
+  const double whole = plan("map.semantic", "-295,0,0", "295,0,0", narrow);
+  EXPECT_EQ(folder.read("out/path.csv"), way);
+  // What the program takes anyhow, the budget, and 40 bytes for each column of the corridor.
+  EXPECT_LT(peak, least + m_megabytes / 10 + 40e-6 * (2 * kHalf / 0.2) * (20 / 0.2));
+  EXPECT_GT(whole, peak + 0.7 * m_megabytes);
 }

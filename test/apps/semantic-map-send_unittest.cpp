@@ -9,11 +9,9 @@
 #include <thread>
 
 #include "../semantic_planning/PaintedWorld.h"
+#include "RunProgram.h"
 #include "SemanticMapCompress.h"
-#include "ShellCommand.h"
-#include "radio/Seal.h"
-#include "radio/UdpSocket.h"
-#include "radio/Wish.h"
+#include "radio/Radio.h"
 
 namespace {
 
@@ -21,7 +19,7 @@ using semantic_octree::Datagram;
 using semantic_octree::loadTree;
 
 /** A folder with a map of a road in grass beside a wall, and one that it became later. */
-class MapRadio : public testing::Test {
+class MapRadio : public FolderTest {
  protected:
   void SetUp() override {
     PaintedWorld world;
@@ -38,7 +36,6 @@ solutions:
 )");
     folder.write("order.yaml", "best_to_worst: [road, grass, mud]\n");
   }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
 
   /** Runs the sender, and when it waits, the shell's commands, which know its port as $port.
    * All must end well. */
@@ -52,11 +49,11 @@ solutions:
                                "port=$(sed -n 's/Waiting at port //p' log)\n" +
                                commands + "\nstatus=$?\nwait $sender || status=\"sender $?\"\n" +
                                "cat log\necho status $status\n");
-    const CommandRun run = runCommand("sh '" + path("script") + "'");
+    const ProgramRun run = runCommand("sh '" + path("script") + "'");
     EXPECT_TRUE(contains(run.output, "status 0\n")) << run.output;
   }
   /** Runs the sender, and when it waits, an action that knows its port. \return how it ended */
-  CommandRun withSender(const std::string& arguments,
+  ProgramRun withSender(const std::string& arguments,
                         const std::function<void(int port)>& action) const {
     folder.write("log", "");
     const std::string command = "cd '" + folder.path().string() +
@@ -70,24 +67,21 @@ solutions:
     if (at != std::string::npos) action(std::stoi(folder.read("log").substr(at + waits.size())));
     return run.get();
   }
-  ProgramRun receive(int port, std::vector<std::string> more = {}) const {
+  ProgramRun receive(int port, Words more = {}) const {
     more.insert(more.end(), {"localhost:" + std::to_string(port), "-f", "-o", path("r.semantic"),
                              "--weights", path("weights.yaml"), "--solution", "road"});
     return runProgram("semantic-map-receive", more);
   }
   /** The tree that semantic-map-compress makes of a map. */
   std::string compressed(const std::string& map, const std::string& solution,
-                         const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {path(map), "--weights", path("weights.yaml"),
-                                          "-o",      path("out"), "-f"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramRun run = runProgram("semantic-map-compress", arguments);
-    EXPECT_EQ(run.status, 0) << run.errors;
+                         const Words& more = {}) const {
+    succeeded(runProgram(
+        "semantic-map-compress",
+        joined({path(map), "--weights", path("weights.yaml"), "-o", path("out"), "-f"}, more)));
     return folder.read("out/" + solution + ".semantic");
   }
 
   static constexpr std::chrono::milliseconds kMoment{20};
-  TemporaryFolder folder;
 };
 
 /** Somebody at a port of an own who asks for a stream. */
@@ -255,7 +249,7 @@ TEST_F(MapRadio, nobodyThereAndPortsInUseAreSaid) {
 }
 
 TEST_F(MapRadio, datagramsOfNobodyChangeNothing) {
-  const CommandRun run = withSender("--timeout 20 map.semantic", [&](int port) {
+  const ProgramRun run = withSender("--timeout 20 map.semantic", [&](int port) {
     std::vector<std::unique_ptr<Asker>> askers;
     for (std::uint32_t i = 0; i < 50; ++i)
       askers.push_back(std::make_unique<Asker>(port, 1000 + i));
@@ -268,8 +262,7 @@ TEST_F(MapRadio, datagramsOfNobodyChangeNothing) {
       }
     EXPECT_EQ(askers[0]->hear()->bytes().size(), 20u);  // less than was asked
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    const ProgramRun received = receive(port);
-    EXPECT_EQ(received.status, 0) << received.errors;
+    succeeded(receive(port));
   });
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(run.output.find(" datagrams of "), run.output.rfind(" datagrams of ")) << run.output;
@@ -277,22 +270,21 @@ TEST_F(MapRadio, datagramsOfNobodyChangeNothing) {
 }
 
 TEST_F(MapRadio, whoFallsSilentIsForgottenAlone) {
-  const CommandRun run = withSender("--timeout 1 map.semantic", [&](int port) {
+  const ProgramRun run = withSender("--timeout 1 map.semantic", [&](int port) {
     std::vector<std::unique_ptr<Asker>> askers;
     for (std::uint32_t i = 0; i < 4; ++i) {
       askers.push_back(std::make_unique<Asker>(port, i));
       EXPECT_EQ(askers.back()->askAsOneShould()->type, Datagram::Type::Data);
     }
     EXPECT_FALSE(Asker(port, 4).askAsOneShould());  // of this address there are enough
-    const ProgramRun received = receive(port);
-    EXPECT_EQ(received.status, 0) << received.errors;
+    succeeded(receive(port));
   });
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_TRUE(contains(run.output, "fell silent")) << run.output;
 }
 
 TEST_F(MapRadio, aCookieIsOfOneStreamAndOneAddress) {
-  const CommandRun run = withSender("--timeout 1 map.semantic", [&](int port) {
+  const ProgramRun run = withSender("--timeout 1 map.semantic", [&](int port) {
     Asker first(port, 1), second(port, 1);
     first.ask();
     const std::string cookie = first.hear()->payload;
@@ -315,7 +307,7 @@ TEST_F(MapRadio, waitingTakesNoProcessorTime) {
   double begin = 10;
   for (const char* timeout : {"0.01", "2"}) {
     const double before = seconds();
-    const CommandRun run = withSender(std::string("map.semantic --timeout ") + timeout, [](int) {});
+    const ProgramRun run = withSender(std::string("map.semantic --timeout ") + timeout, [](int) {});
     EXPECT_LT(seconds() - before, begin + 0.3) << run.output;
     begin = seconds() - before;
   }
@@ -325,17 +317,16 @@ TEST_F(MapRadio, onlyWhoHasTheKeyIsHeard) {
   folder.write("key", "sixteen bytes or more");
   folder.write("other", "sixteen bytes or less");
   folder.write("short", "fifteen bytes..");
-  const CommandRun run = withSender("--key key --timeout 20 map.semantic", [&](int port) {
+  const ProgramRun run = withSender("--key key --timeout 20 map.semantic", [&](int port) {
     EXPECT_FALSE(Asker(port, 1).askAsOneShould());
-    for (const auto& key : {std::vector<std::string>(), {"--key", path("other")}}) {
-      std::vector<std::string> arguments = key;
+    for (const auto& key : {Words(), {"--key", path("other")}}) {
+      Words arguments = key;
       arguments.insert(arguments.end(), {"--timeout", "0.5"});
       const ProgramRun stranger = receive(port, arguments);
       EXPECT_EQ(stranger.status, 1);
       EXPECT_TRUE(contains(stranger.errors, "nobody answers at")) << stranger.errors;
     }
-    const ProgramRun received = receive(port, {"--key", path("key")});
-    EXPECT_EQ(received.status, 0) << received.errors;
+    succeeded(receive(port, {"--key", path("key")}));
   });
   EXPECT_EQ(run.status, 0) << run.output;
   expectSame(folder.read("r.semantic"), compressed("map.semantic", "road"));

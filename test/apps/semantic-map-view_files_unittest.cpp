@@ -46,19 +46,14 @@ class SemanticMapViewFiles : public SemanticMapView {
   }
 
   /** \return what the window said */
-  std::string work(const std::vector<std::string>& files, const std::vector<std::string>& steps) {
-    std::vector<std::string> command{MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"),
-                                     kViewer};
+  std::string work(const Words& files, const Words& steps) {
+    Words command{MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer};
     for (const auto& file : files) command.push_back(path(file));
-    for (const auto& word :
-         {std::string("--size"), size(), std::string("--camera"), kTop, std::string("--")})
-      command.push_back(word);
-    command.insert(command.end(), steps.begin(), steps.end());
+    command = joined(command, {"--size", size(), "--camera", kTop, "--"}, steps);
 #ifdef MSO_DROP_FILES
     command.insert(command.begin(), {"/usr/bin/env", "DROP_FILES=" MSO_DROP_FILES});
 #endif
-    const ProgramRun run = runInX(command);
-    EXPECT_EQ(run.status, 0) << run.output << run.errors;
+    succeeded(runInX(command));
     return folder.read("said.txt");
   }
 
@@ -148,10 +143,9 @@ TEST_F(SemanticMapViewFiles, InFoldersOfTilesAreAsFineAsMemoryAllows) {
     to.save();
   }
   const auto said = [&](double megabytes, const std::string& clip) {
-    const ProgramRun run =
+    const ProgramRun run = succeeded(
         runInX({kViewer, path("tiles"), "--memory", std::to_string(megabytes), "--clip=" + clip,
-                "--size", size(), "--camera", kTop, "--no-panels", "-f", "-o", path("view.png")});
-    EXPECT_EQ(run.status, 0) << run.errors;
+                "--size", size(), "--camera", kTop, "--no-panels", "-f", "-o", path("view.png")}));
     return run.output;
   };
   const auto picture = [&] { return cv::imread(path("view.png")); };
@@ -181,10 +175,10 @@ TEST_F(SemanticMapViewFiles, InFoldersOfTilesAreAsFineAsMemoryAllows) {
 
 TEST_F(SemanticMapView, ShowsUnknownSpaceWithinWhatIsKnownOrCut) {
   SKIP_WITHOUT_WINDOWS();
-  const auto grayAt = [&](const std::vector<std::string>& more, double x, double y) {
-    std::vector<std::string> arguments{path("map.semantic"), "--no-panels", "--camera", kTop};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const cv::Vec3b color = draw(arguments).at<cv::Vec3b>(pixelOf(x, y));
+  const auto grayAt = [&](const Words& more, double x, double y) {
+    const cv::Vec3b color =
+        draw(joined({path("map.semantic"), "--no-panels", "--camera", kTop}, more))
+            .at<cv::Vec3b>(pixelOf(x, y));
     return color[0] < 240 && std::abs(color[0] - color[2]) < 12;
   };
   // Beams from 6 m above the middle leave the corners of the box around them unknown.

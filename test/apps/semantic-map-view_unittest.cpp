@@ -34,10 +34,8 @@ TEST_F(SemanticMapView, ShowsWhatIsInsideOfABox) {
 
 TEST_F(SemanticMapView, WritesAnAnimation) {
   SKIP_WITHOUT_WINDOWS();
-  const ProgramRun run =
-      runInX({kViewer, path("map.semantic"), "--size", "400x320", "--camera", kTop, "--animation",
-              folder.write("turn.gif", "before").string(), "-f"});
-  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  succeeded(runInX({kViewer, path("map.semantic"), "--size", "400x320", "--camera", kTop,
+                    "--animation", folder.write("turn.gif", "before").string(), "-f"}));
   const std::string gif = folder.read("turn.gif");
   EXPECT_EQ(gif.substr(0, 6), "GIF89a");
   const auto word = [&](std::size_t at) {
@@ -48,10 +46,9 @@ TEST_F(SemanticMapView, WritesAnAnimation) {
 }
 
 TEST_F(SemanticMapView, SaysWhatIsMissingInsteadOfFailing) {
-  const auto without = [&](const std::vector<std::string>& arguments) {
-    std::vector<std::string> command = {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kViewer};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return runProgram("/usr/bin/env", command);
+  const auto without = [&](const Words& arguments) {
+    return runProgram("/usr/bin/env",
+                      joined({"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kViewer}, arguments));
   };
   const ProgramRun noDisplay = without({path("map.semantic")});
   EXPECT_EQ(noDisplay.status, 1);
@@ -94,11 +91,10 @@ TEST_F(SemanticMapView, AnswersAClickOnACell) {
   const auto click = [](const cv::Point& at, const std::string& words) {
     return std::to_string(at.x) + " " + std::to_string(at.y) + " " + words;
   };
-  const ProgramRun run = runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"),
-                                 kViewer, path("map.semantic"), "--size", size(), "--camera", kTop,
-                                 "--", click(pixelOf(-1.1, -2.1, 0.2), "key 32762 32757 32768"),
-                                 click(pixelOf(5.1, 0.1, 2), "occupied, wall")});
-  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  succeeded(runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
+                    path("map.semantic"), "--size", size(), "--camera", kTop, "--",
+                    click(pixelOf(-1.1, -2.1, 0.2), "key 32762 32757 32768"),
+                    click(pixelOf(5.1, 0.1, 2), "occupied, wall")}));
   const std::string said = folder.read("said.txt");
   EXPECT_TRUE(contains(said, "occupied, road")) << said;
 }
@@ -108,11 +104,9 @@ TEST_F(SemanticMapView, SaysWhyACellIsExpandedOrNot) {
   // A voxel of the wall, which is expanded down to voxels, and one amid the grass, which is not.
   int lines = 0, open = 0;
   for (const cv::Point& pixel : {pixelOf(4.1, 0.9, 2), pixelOf(3.1, 3.1, 0.2)}) {
-    const ProgramRun run =
-        runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
-                path("map.semantic"), "--size", size(), "--camera", kTop, "--compress", "--",
-                std::to_string(pixel.x) + " " + std::to_string(pixel.y) + " expanded, G"});
-    ASSERT_EQ(run.status, 0) << run.output << run.errors;
+    succeeded(runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
+                      path("map.semantic"), "--size", size(), "--camera", kTop, "--compress", "--",
+                      std::to_string(pixel.x) + " " + std::to_string(pixel.y) + " expanded, G"}));
     const std::string said = folder.read("said.txt");
     std::smatch alpha, key;
     ASSERT_TRUE(std::regex_search(said, alpha, std::regex("leaves, alpha ([0-9.e-]+)"))) << said;
@@ -149,20 +143,17 @@ TEST_F(SemanticMapView, SavesWeightsFromWhichTheSameLeavesFollow) {
   // In the panel at the right: a place on the slider of alpha, and the button below.
   const std::string slider = std::to_string(kWidth - 170) + " 190 leaves, alpha",
                     save = std::to_string(kWidth - 230) + " 418 wrote ./weights-1.yaml";
-  const ProgramRun run =
-      runInX({"/usr/bin/env", "-C", folder.path().string(),
-              MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
-              path("map.semantic"), "--size", size(), "--compress", "--", slider, save});
-  ASSERT_EQ(run.status, 0) << run.output << run.errors;
+  succeeded(runInX({"/usr/bin/env", "-C", folder.path().string(),
+                    MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
+                    path("map.semantic"), "--size", size(), "--compress", "--", slider, save}));
   const std::string said = folder.read("said.txt");
   std::smatch view, compress, begin;
   ASSERT_TRUE(std::regex_search(said, view, std::regex("weights-1.yaml: ([0-9]+) leaves"))) << said;
   ASSERT_TRUE(std::regex_search(said, begin, std::regex("([0-9]+) leaves, alpha"))) << said;
   EXPECT_NE(view[1], begin[1]) << "the slider did nothing:\n" << said;
-  const ProgramRun other = runProgram(
+  const ProgramRun other = succeeded(runProgram(
       "semantic-map-compress",
-      {path("map.semantic"), "--weights", path("weights-1.yaml"), "-o", path("compressed")});
-  EXPECT_EQ(other.status, 0) << other.errors;
+      {path("map.semantic"), "--weights", path("weights-1.yaml"), "-o", path("compressed")}));
   ASSERT_TRUE(std::regex_search(other.output, compress, std::regex("([0-9]+) of [0-9]+ leaves")))
       << other.output;
   EXPECT_EQ(view[1], compress[1]);

@@ -1,6 +1,5 @@
 // What becomes of outputs when a program is told to end.
 #include <gtest/gtest.h>
-#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
 #include <semantic_octree/TreeFile.h>
 #include <nlohmann/json.hpp>
@@ -8,7 +7,7 @@
 #include <chrono>
 #include <set>
 
-#include "ShellCommand.h"
+#include "RunProgram.h"
 #include "TemporaryFolder.h"
 
 namespace fs = std::filesystem;
@@ -16,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /** rawlog2semantic-map on many times the sample's drive, which takes far longer than the tests. */
-class Interrupted : public testing::Test {
+class Interrupted : public FolderTest {
  protected:
   void SetUp() override {
     folder.write("out/map.semantic", "of before");
@@ -35,7 +34,7 @@ class Interrupted : public testing::Test {
                                "/rawlog2semantic-map -v -f --config " + map + " -o out" + rawlogs +
                                " >log 2>&1 &\npid=$!\n" + "until grep -q '" + when +
                                "' log; do sleep 0.05; done\n" + commands + "\nwait $pid\n");
-    return runCommand("sh " + (folder / "script").string()).status;
+    return runCommand("sh " + path("script")).status;
   }
   std::string log() const { return folder.read("log"); }
   bool leftAnything() const {
@@ -46,7 +45,6 @@ class Interrupted : public testing::Test {
 
   const fs::path sources = MSO_SOURCE_DIR;
   std::string rawlogs;
-  TemporaryFolder folder;
 };
 
 }  // namespace
@@ -60,7 +58,7 @@ TEST_F(Interrupted, onceItWritesWhatIsThereAndSaysSo) {
   const int inserted = summary["observations"]["inserted"];
   EXPECT_GE(inserted, 1);
   EXPECT_LT(inserted, 30 * 24);
-  EXPECT_GT(semantic_octree::loadTree((folder / "out/map.semantic").string()).size(), 100u);
+  EXPECT_GT(semantic_octree::loadTree(path("out/map.semantic")).size(), 100u);
   EXPECT_FALSE(leftAnything());
 }
 
@@ -93,7 +91,7 @@ namespace {
 
 /** Runs a program in the folder, asks it once to stop when it has begun its output, and waits.
  * \param meanwhile a command of the shell before that */
-CommandRun stopEarly(const TemporaryFolder& folder, const std::string& command,
+ProgramRun stopEarly(const TemporaryFolder& folder, const std::string& command,
                      const std::string& meanwhile = ":") {
   folder.write("script", "cd '" + folder.path().string() + "'\n" + MSO_BIN_DIR "/" + command +
                              " &\npid=$!\n" +
@@ -107,7 +105,7 @@ CommandRun stopEarly(const TemporaryFolder& folder, const std::string& command,
 
 TEST(StoppedEarly, aSyntheticDriveIsAShorterOne) {
   const TemporaryFolder folder;
-  const CommandRun run =
+  const ProgramRun run =
       stopEarly(folder, "synth-rawlog -o a.rawlog --frames 1000000 --sensor lidar --columns 60");
   EXPECT_EQ(run.status, 130) << run.output;
   EXPECT_TRUE(contains(run.output, "will stop after this frame")) << run.output;
@@ -121,7 +119,7 @@ TEST(StoppedEarly, aSyntheticDriveIsAShorterOne) {
 TEST(StoppedEarly, aRobotHasDrivenAsFarAsItGot) {
   const TemporaryFolder folder;
   const std::string config = std::string(MSO_SOURCE_DIR) + "/config/";
-  const CommandRun run = stopEarly(
+  const ProgramRun run = stopEarly(
       folder,
       "semantic-map-drive --start=-14,-19,10 --goal=25,-12,90 --no-pictures -o out --config " +
           config + "drives/synthetic.ini --order " + config + "orders/synthetic.yaml");
@@ -134,7 +132,7 @@ TEST(WrittenMeanwhile, byOthersStaysAndTheResultIsKeptBesideIt) {
   const TemporaryFolder folder;
   const std::string command =
       "synth-rawlog -o a.rawlog --frames 1000000 --sensor lidar --columns 60";
-  const CommandRun run = stopEarly(folder, command, "echo theirs >a.rawlog");
+  const ProgramRun run = stopEarly(folder, command, "echo theirs >a.rawlog");
   EXPECT_EQ(run.status, 1) << run.output;
   EXPECT_TRUE(contains(run.output, "somebody else has written it since")) << run.output;
   EXPECT_EQ(folder.read("a.rawlog"), "theirs\n");
@@ -145,8 +143,6 @@ TEST(WrittenMeanwhile, byOthersStaysAndTheResultIsKeptBesideIt) {
   EXPECT_EQ(stopEarly(folder, command + " -f", "echo theirs >a.rawlog").status, 130);
   EXPECT_TRUE(labeled_cloud::RawlogReader(folder / "a.rawlog").next());
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -159,7 +155,7 @@ int kills() {
 /** rawlog2semantic-map into one folder, of the sample's drive with one voxel size or another. */
 class Killed : public testing::Test {
  protected:
-  CommandRun map(const std::string& resolution, const std::string& wrapper = "") const {
+  ProgramRun map(const std::string& resolution, const std::string& wrapper = "") const {
     const std::string sources = MSO_SOURCE_DIR;
     return runCommand(wrapper + " " MSO_BIN_DIR "/rawlog2semantic-map -f --config '" + sources +
                       "/config/maps/synthetic.ini' --resolution " + resolution + " -o '" +
@@ -192,7 +188,7 @@ TEST_F(Killed, atAnyTimeLeavesWholeFilesAndTheNextRunNothingElse) {
   double seconds = 0;
   for (const char* resolution : {"1", "0.5"}) {
     const auto begin = Clock::now();
-    const CommandRun run = map(resolution);
+    const ProgramRun run = map(resolution);
     ASSERT_EQ(run.status, 0) << run.output;
     seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     maps.insert(folder.read("out/map.semantic"));

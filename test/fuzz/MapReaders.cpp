@@ -11,7 +11,7 @@
 #include "FuzzedFile.h"
 #include "Readers.h"
 #include "StreamPackets.h"
-#include "radio/Wish.h"
+#include "radio/Radio.h"
 
 namespace {
 

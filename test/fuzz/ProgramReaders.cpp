@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "CommandLine.h"
+#include "Application.h"
 #include "FuzzedFile.h"
-#include "OptionFlags.h"
+#include "Options.h"
 #include "Outputs.h"
 #include "Readers.h"
 #include "dataset2rawlog/Conversion.h"

@@ -8,7 +8,6 @@
 #include <labeled_cloud/Rawlogs.h>
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
-#include <map_operations/MapOperations.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
@@ -18,8 +17,6 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
 #include <semantic_types/ClassTable.h>
-
-#include <sstream>
 
 #include "FuzzedFile.h"
 

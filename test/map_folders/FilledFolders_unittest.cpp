@@ -12,6 +12,8 @@ using namespace folder_drive;
 
 namespace {
 
+using FilledFolders = FolderTest;
+
 /** Maps of different places that overlap, one of them compressed. */
 std::vector<SemanticOcTree> someMaps() {
   std::vector<SemanticOcTree> maps;
@@ -43,7 +45,7 @@ void expectFilled(const SemanticOcTree& expected, const F& fill) {
 
 }  // namespace
 
-TEST(FilledFolders, copiesAreTheSameToTheLastBit) {
+TEST_F(FilledFolders, copiesAreTheSameToTheLastBit) {
   for (const SemanticOcTree& map : someMaps())
     expectFilled(map, [&](SemanticOcTree& copy) { copyTo(copy, map); });
   SemanticOcTree notPruned = emptyMap(false);
@@ -51,21 +53,21 @@ TEST(FilledFolders, copiesAreTheSameToTheLastBit) {
   expectFilled(notPruned, [&](SemanticOcTree& copy) { copyTo(copy, notPruned); });
 }
 
-TEST(FilledFolders, sumsAreThoseInMemory) {
+TEST_F(FilledFolders, sumsAreThoseInMemory) {
   const auto maps = someMaps();
   const std::vector<const SemanticOcTree*> both = {&maps[0], &maps[1]};
   for (const Limits limits : {Limits::Apply, Limits::Keep})
     expectFilled(merged(both, limits), [&](SemanticOcTree& sum) { mergeTo(sum, both, limits); });
 }
 
-TEST(FilledFolders, compressedTreesAreThoseInMemory) {
+TEST_F(FilledFolders, compressedTreesAreThoseInMemory) {
   for (const auto frame : {AbstractionOptions::Frame::Free, AbstractionOptions::Frame::Charged}) {
-    const TemporaryFolder folder;
+    const TemporaryFolder fresh;
     const auto scans = someScans(24, 8);
     SemanticOcTree whole = emptyMap();
     insertAll(whole, scans);
-    saveScans(folder / "map", scans);
-    StoredMap stored(folder / "map", tight().memory);
+    saveScans(fresh / "map", scans);
+    StoredMap stored(fresh / "map", tight().memory);
     AbstractionOptions options = someAbstraction();
     options.frame = frame;
     setAbstraction(whole, options);
@@ -76,8 +78,7 @@ TEST(FilledFolders, compressedTreesAreThoseInMemory) {
   }
 }
 
-TEST(FilledFolders, stayWithinTheBudgetWhileTheyAreFilled) {
-  const TemporaryFolder folder;
+TEST_F(FilledFolders, stayWithinTheBudgetWhileTheyAreFilled) {
   SemanticOcTree map = emptyMap();
   insertAll(map, someScans(25, 40));
   StoredMap stored(emptyLike(map), folder / "map", tight());
@@ -86,8 +87,7 @@ TEST(FilledFolders, stayWithinTheBudgetWhileTheyAreFilled) {
   EXPECT_LT(stored.folder()->contents().tilesInMemory, stored.folder()->contents().tiles / 4);
 }
 
-TEST(FilledFolders, abstractionIsKeptAnewAndNoMoreWhereverTilesAre) {
-  const TemporaryFolder folder;
+TEST_F(FilledFolders, abstractionIsKeptAnewAndNoMoreWhereverTilesAre) {
   const auto scans = someScans(26, 8);
   SemanticOcTree whole = emptyMap(), map = emptyMap();
   MapFolder tiles(map, folder / "map", kWrite, tight(3.2));
@@ -111,8 +111,7 @@ TEST(FilledFolders, abstractionIsKeptAnewAndNoMoreWhereverTilesAre) {
   EXPECT_TRUE(loadMap(folder / "map") == whole);
 }
 
-TEST(FilledFolders, refuseWhatIsNoTarget) {
-  const TemporaryFolder folder;
+TEST_F(FilledFolders, refuseWhatIsNoTarget) {
   SemanticOcTree map = emptyMap();
   insertAll(map, someScans(27, 3));
   SemanticOcTree full = map, other(0.2, numberedClasses(5)), watched = emptyMap();
@@ -127,13 +126,12 @@ TEST(FilledFolders, refuseWhatIsNoTarget) {
   EXPECT_THROW(copyTo(toRead, map), std::logic_error);
 }
 
-TEST(FilledFolders, thatDoNotFitIntoMemorySayHowMuchTheyNeed) {
-  const TemporaryFolder folder;
+TEST_F(FilledFolders, thatDoNotFitIntoMemorySayHowMuchTheyNeed) {
   saveScans(folder / "map", someScans(28, 8));
   const SemanticOcTree whole = loadMap(folder / "map");
   StoredMap stored(folder / "map", 0);
   const std::string message = errorOf([&] { stored.folder()->bringAll(whole.memoryUsage() / 4); });
-  EXPECT_TRUE(contains(message, (folder / "map").string())) << message;
+  EXPECT_TRUE(contains(message, path("map"))) << message;
   EXPECT_TRUE(contains(message, "needs about ")) << message;
   EXPECT_TRUE(contains(message, strict_files::sizeText(whole.memoryUsage() / 4) + " are left"));
   EXPECT_LE(stored.folder()->contents().tilesInMemory, 1u);

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "RandomScans.h"
-#include "TemporaryFolder.h"
+#include "FolderTest.h"
 
 namespace folder_drive {
 

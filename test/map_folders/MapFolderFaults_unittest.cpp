@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+using MapFolderFaults = FolderTest;
+
 SemanticOcTree mapOf(const std::vector<PosedCloud>& scans, std::size_t number) {
   SemanticOcTree map = emptyMap();
   insertAll(map, {scans.begin(), scans.begin() + static_cast<long>(number)});
@@ -33,8 +35,7 @@ std::vector<std::string> problemsOf(const fs::path& folder) {
 
 }  // namespace
 
-TEST(MapFolderFaults, aBadTileIsNamedAndTheRestIsUsable) {
-  const TemporaryFolder folder;
+TEST_F(MapFolderFaults, aBadTileIsNamedAndTheRestIsUsable) {
   saveScans(folder / "map", someScans(1, 6));
   const auto files = tileFiles(folder / "map");
   ASSERT_GT(files.size(), 10u);
@@ -62,8 +63,7 @@ TEST(MapFolderFaults, aBadTileIsNamedAndTheRestIsUsable) {
   EXPECT_TRUE(problemsOf(folder / "map").empty());
 }
 
-TEST(MapFolderFaults, whatCannotBeReadLeavesTheMapAsItWas) {
-  const TemporaryFolder folder;
+TEST_F(MapFolderFaults, whatCannotBeReadLeavesTheMapAsItWas) {
   const auto scans = someScans(2, 6);
   saveScans(folder / "map", scans);
   const auto files = tileFiles(folder / "map");
@@ -85,8 +85,7 @@ TEST(MapFolderFaults, whatCannotBeReadLeavesTheMapAsItWas) {
   EXPECT_TRUE(tiles.problems().empty());
 }
 
-TEST(MapFolderFaults, ofAnotherKindOfMapIsRefused) {
-  const TemporaryFolder folder;
+TEST_F(MapFolderFaults, ofAnotherKindOfMapIsRefused) {
   saveScans(folder / "map", someScans(4, 2));
   SemanticOcTree coarse(0.8, numberedClasses(5)), others(0.4, numberedClasses(4));
   for (SemanticOcTree* map : {&coarse, &others}) {
@@ -101,14 +100,13 @@ TEST(MapFolderFaults, ofAnotherKindOfMapIsRefused) {
                        "nowhere"));
 }
 
-TEST(MapFolderFaults, oneWritesAndOthersReadWhatWasSaved) {
-  const TemporaryFolder folder;
+TEST_F(MapFolderFaults, oneWritesAndOthersReadWhatWasSaved) {
   const auto scans = someScans(5, 8);
   saveScans(folder / "map", {scans.begin(), scans.begin() + 4});
   SemanticOcTree map = emptyMap(), second = emptyMap(), readers = emptyMap();
   MapFolder writer(map, folder / "map", kWrite, tight());
   EXPECT_EQ(errorOf([&] { MapFolder(second, folder / "map", kWrite); }),
-            (folder / "map").string() + ": another process writes into this folder");
+            path("map") + ": another process writes into this folder");
   {
     MapFolder reader(readers, folder / "map", kRead, tight());
     insertAll(map, {scans.begin() + 4, scans.end()});
@@ -122,8 +120,7 @@ TEST(MapFolderFaults, oneWritesAndOthersReadWhatWasSaved) {
   EXPECT_TRUE(loadMap(folder / "map") == mapOf(scans, 8));
 }
 
-TEST(MapFolderFaults, aFullDiskLosesNothing) {
-  const TemporaryFolder folder;
+TEST_F(MapFolderFaults, aFullDiskLosesNothing) {
   const auto scans = someScans(6, 8);
   saveScans(folder / "map", {scans.begin(), scans.begin() + 4});
   SemanticOcTree map = emptyMap();
@@ -147,14 +144,14 @@ TEST(MapFolderFaults, aFullDiskLosesNothing) {
   EXPECT_TRUE(loadMap(folder / "map") == mapOf(scans, 8));
 }
 
-TEST(MapFolderFaults, killedAtAnyMomentItIsWhatWasSavedLast) {
+TEST_F(MapFolderFaults, killedAtAnyMomentItIsWhatWasSavedLast) {
   const auto scans = someScans(7, 12);
   for (int round = 0; round < 8; ++round) {
-    const TemporaryFolder folder;
+    const TemporaryFolder fresh;
     const pid_t child = fork();
     if (child == 0) {
       SemanticOcTree map = emptyMap();
-      MapFolder tiles(map, folder / "map", kWrite, tight());
+      MapFolder tiles(map, fresh / "map", kWrite, tight());
       for (std::size_t i = 0; i < scans.size(); ++i) {
         map.insert(scans[i].cloud, scans[i].T_map_sensor);
         if (i % 3 == 2) tiles.save();
@@ -164,13 +161,13 @@ TEST(MapFolderFaults, killedAtAnyMomentItIsWhatWasSavedLast) {
     usleep(static_cast<useconds_t>(3000 + 9000 * round));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    if (!MapFolder::isAt(folder / "map")) continue;  // it was killed before
-    const SemanticOcTree found = loadMap(folder / "map");
+    if (!MapFolder::isAt(fresh / "map")) continue;  // it was killed before
+    const SemanticOcTree found = loadMap(fresh / "map");
     bool isOne = false;
     for (std::size_t n = 3; n <= scans.size(); n += 3) isOne |= found == mapOf(scans, n);
     EXPECT_TRUE(isOne);
-    saveScans(folder / "map", {});  // the next one clears up
-    const auto files = tileFiles(folder / "map");
+    saveScans(fresh / "map", {});  // the next one clears up
+    const auto files = tileFiles(fresh / "map");
     for (const auto& file : files) EXPECT_NO_THROW(loadMap(file));
   }
 }

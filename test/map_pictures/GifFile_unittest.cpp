@@ -5,12 +5,14 @@
 
 #include <memory>
 
+#include "FolderTest.h"
 #include "FullDisk.h"
-#include "TemporaryFolder.h"
 
 using map_pictures::GifFile;
 
 namespace {
+
+using GifFiles = FolderTest;
 
 /** What a viewer shows, frame by frame, as giflib reads it back. */
 class Played {
@@ -71,7 +73,7 @@ Played play(const std::vector<cv::Mat>& frames) {
 
 }  // namespace
 
-TEST(GifFile, framesOfFewColorsComeBackAsTheyWereAndDrawOnlyWhatChanged) {
+TEST_F(GifFiles, framesOfFewColorsComeBackAsTheyWereAndDrawOnlyWhatChanged) {
   cv::Mat second = fields();
   const cv::Rect changed(70, 5, 8, 9);
   second(changed).setTo(cv::Scalar(0, 0, 0));
@@ -86,7 +88,7 @@ TEST(GifFile, framesOfFewColorsComeBackAsTheyWereAndDrawOnlyWhatChanged) {
   EXPECT_EQ(played.places[2].area(), 1);
 }
 
-TEST(GifFile, slowChangesAddUpUntilTheyAreDrawn) {
+TEST_F(GifFiles, slowChangesAddUpUntilTheyAreDrawn) {
   std::vector<cv::Mat> frames;
   for (int gray = 100; gray < 200; gray += 3)
     frames.emplace_back(20, 20, CV_8UC3, cv::Scalar::all(gray));
@@ -109,14 +111,12 @@ RC_GTEST_PROP(GifFile, whateverTheFramesAreTheLastIsShownNearly, ()) {
                        frames.back().colRange(width / 2, width)) <= 18);
 }
 
-TEST(GifFile, withoutBeingClosedItIsNotThere) {
-  const TemporaryFolder folder;
+TEST_F(GifFiles, withoutBeingClosedItIsNotThere) {
   { GifFile(folder / "a.gif", 0.1).add(fields()); }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(GifFile, whatCannotBeWrittenIsAnErrorThatNamesTheFile) {
-  const TemporaryFolder folder;
+TEST_F(GifFiles, whatCannotBeWrittenIsAnErrorThatNamesTheFile) {
   EXPECT_TRUE(contains(errorOf([&] { GifFile(folder / "no/a.gif", 0.1); }), "no/a.gif"));
   EXPECT_TRUE(contains(errorOf([&] { GifFile(folder / "b.gif", 0.1).close(); }), "b.gif"));
   const FullDisk disk(100);
@@ -129,8 +129,7 @@ TEST(GifFile, whatCannotBeWrittenIsAnErrorThatNamesTheFile) {
   EXPECT_FALSE(std::filesystem::exists(folder / "full.gif"));
 }
 
-TEST(GifFile, badFramesAndPeriodsAreNamed) {
-  const TemporaryFolder folder;
+TEST_F(GifFiles, badFramesAndPeriodsAreNamed) {
   GifFile gif(folder / "a.gif", 0.1);
   gif.add(fields());
   EXPECT_TRUE(contains(errorOf([&] { gif.add(fields().rowRange(0, 9)); }), "size"));

@@ -6,7 +6,6 @@
 #include <labeled_cloud/ScanStream.h>
 #include <map_operations/SmoothedView.h>
 #include <map_pictures/MapPictures.h>
-#include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Movers.h>
 #include <semantic_driving/ObstacleSensing.h>
 #include <semantic_driving/ViewStrategy.h>

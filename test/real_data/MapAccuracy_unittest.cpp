@@ -129,15 +129,13 @@ TEST(StreetMap, theStreetFromAboveShowsRoadSidewalkCarsAndBuildings) {
   SKIP_WITHOUT_DATA("semantic_kitti");
   const TemporaryFolder folder;
   const std::string rawlog = (folder / "00.rawlog").string();
-  const ProgramRun conversion =
+  succeeded(
       runProgram("dataset2rawlog",
                  {"semantic-kitti", (sharedDataDir() / "semantic_kitti/00").string(), "--classes",
-                  (kSources / "config/classes/semantic_kitti.yaml").string(), "-o", rawlog});
-  ASSERT_EQ(conversion.status, 0) << conversion.errors;
-  const ProgramRun mapping = runProgram(
-      "rawlog2semantic-map", {"--config", (kSources / "config/maps/semantic-kitti.ini").string(),
-                              "--output", (folder / "out").string(), rawlog});
-  ASSERT_EQ(mapping.status, 0) << mapping.errors;
+                  (kSources / "config/classes/semantic_kitti.yaml").string(), "-o", rawlog}));
+  succeeded(runProgram("rawlog2semantic-map",
+                       {"--config", (kSources / "config/maps/semantic-kitti.ini").string(),
+                        "--output", (folder / "out").string(), rawlog}));
 
   const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
   EXPECT_EQ(summary["observations"]["inserted"], 10);

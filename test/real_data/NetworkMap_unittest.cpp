@@ -36,17 +36,15 @@ ClassTable kittiTable() {
 std::vector<LabeledCloud> labelByNetwork(const TemporaryFolder& folder) {
   const std::string scans = (folder / "scans.rawlog").string();
   const std::string labeled = (folder / "labeled.rawlog").string();
-  const ProgramRun conversion = runProgram(
-      "dataset2rawlog", {"semantic-kitti", (sharedDataDir() / "semantic_kitti/00").string(),
-                         "--no-labels", "--images", "-o", scans});
-  EXPECT_EQ(conversion.status, 0) << conversion.errors;
-  const ProgramRun mapping = runProgram(
+  succeeded(runProgram("dataset2rawlog",
+                       {"semantic-kitti", (sharedDataDir() / "semantic_kitti/00").string(),
+                        "--no-labels", "--images", "-o", scans}));
+  succeeded(runProgram(
       "rawlog2semantic-map",
       {"--config", (kConfig / "maps/semantic-kitti.ini").string(), "--output",
        (folder / "out").string(), "--network",
        (sharedDataDir() / "networks/fchardnet_kitti.onnx").string(), "--network-config",
-       (kConfig / "networks/fchardnet_kitti.yaml").string(), "--save-labeled", labeled, scans});
-  EXPECT_EQ(mapping.status, 0) << mapping.errors;
+       (kConfig / "networks/fchardnet_kitti.yaml").string(), "--save-labeled", labeled, scans}));
   std::vector<LabeledCloud> clouds;
   labeled_cloud::RawlogReader reader(labeled);
   while (const auto entry = reader.next())

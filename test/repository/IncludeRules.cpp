@@ -7,66 +7,17 @@
 
 namespace fs = std::filesystem;
 
-const IncludeTable& includeTable() {
-  static const IncludeTable table = {
-      {"strict_files", {"Eigen", "fcntl.h", "sys", "unistd.h", "yaml-cpp"}},
-      {"semantic_types", {"Eigen", "yaml-cpp", "strict_files"}},
-      {"tree_abstraction", {}},
-      {"semantic_octree", {"Eigen", "octomap", "zlib.h", "semantic_types", "strict_files"}},
-      {"view_information", {"semantic_octree", "tree_abstraction"}},
-      {"semantic_abstraction",
-       {"Eigen", "semantic_octree", "semantic_octree/store", "semantic_types", "strict_files",
-        "tree_abstraction"}},
-      {"map_folders", {"Eigen", "semantic_octree", "semantic_octree/store", "strict_files"}},
-      {"map_streams",
-       {"zlib.h", "semantic_abstraction", "semantic_octree", "semantic_octree/store",
-        "tree_abstraction"}},
-      {"map_correction",
-       {"Eigen", "semantic_octree", "semantic_octree/store", "semantic_types", "strict_files"}},
-      {"map_operations",
-       {"Eigen", "octomap", "semantic_octree", "semantic_octree/store", "semantic_types",
-        "strict_files"}},
-      {"mrpt_compat", {"mrpt", "opencv2"}},
-      {"labeled_cloud",
-       {"Eigen", "lzf.h", "mrpt", "opencv2", "png.h", "yaml-cpp", "zlib.h", "zstd.h",
-        "semantic_types", "strict_files", "mrpt_compat"}},
-      {"semantic_map",
-       {"Eigen", "mrpt", "octomap", "opencv2", "zlib.h", "labeled_cloud", "mrpt_compat",
-        "map_folders", "map_operations", "semantic_abstraction", "semantic_octree",
-        "semantic_types", "strict_files", "tree_abstraction"}},
-      {"map_pictures",
-       {"Eigen", "ft2build.h", "gif_lib.h", "mrpt", "octomap", "opencv2", "mrpt_compat",
-        "semantic_octree", "semantic_types", "strict_files"}},
-      {"map_view",
-       {"Eigen", "yaml-cpp", "semantic_abstraction", "semantic_octree", "semantic_types",
-        "strict_files", "tree_abstraction"}},
-      {"colored_graph", {}},
-      {"semantic_planning/vehicle", {"Eigen", "mrpt", "semantic_types", "strict_files"}},
-      {"semantic_planning/ground",
-       {"colored_graph", "semantic_octree", "semantic_types", "strict_files",
-        "semantic_planning/vehicle"}},
-      {"semantic_planning/roadmap",
-       {"mrpt", "colored_graph", "semantic_abstraction", "semantic_octree", "strict_files",
-        "semantic_planning/vehicle", "semantic_planning/ground"}},
-      {"semantic_planning/planner",
-       {"Eigen", "mrpt", "colored_graph", "semantic_abstraction", "semantic_octree",
-        "semantic_types", "strict_files", "semantic_planning/vehicle", "semantic_planning/ground",
-        "semantic_planning/roadmap"}},
-      {"semantic_driving",
-       {"Eigen", "mrpt", "octomap", "colored_graph", "mrpt_compat", "semantic_abstraction",
-        "semantic_types", "strict_files", "semantic_planning", "view_information"}},
-      {"synthetic_world", {"Eigen", "semantic_types", "strict_files"}},
-      {"semantic_slam",
-       {"Eigen", "map_correction", "map_operations", "semantic_octree", "semantic_types",
-        "strict_files"}},
-      {"semantic_navigation",
-       {"Eigen", "mrpt", "colored_graph", "semantic_abstraction", "semantic_driving",
-        "semantic_octree", "semantic_planning", "semantic_slam", "semantic_types",
-        "tree_abstraction"}},
-      {"python",
-       {"Eigen", "pybind11", "colored_graph", "map_operations", "semantic_abstraction",
-        "semantic_octree", "semantic_planning", "semantic_types", "strict_files"}},
-  };
+IncludeTable includeTable(const fs::path& markdownFile) {
+  static const std::regex row(R"(^\| `([a-z_/]+)` \| ([\w., /-]+) \|$)"), name(R"([\w./-]+)");
+  IncludeTable table;
+  bool isInTable = false;
+  for (const SourceLine& line : linesOf(markdownFile)) {
+    isInTable = line.text.rfind("| library or room |", 0) == 0 || (isInTable && !line.text.empty());
+    std::smatch match;
+    if (!isInTable || !std::regex_match(line.text, match, row)) continue;
+    const std::string names = match[2] == "nothing" ? "" : match[2].str();
+    table[match[1]] = {std::sregex_token_iterator(names.begin(), names.end(), name), {}};
+  }
   return table;
 }
 

@@ -9,8 +9,8 @@
  * include's path, such as `mrpt` in <mrpt/poses/CPose3D.h>. */
 using IncludeTable = std::map<std::string, std::set<std::string>>;
 
-/** The boundaries between this project's libraries (see doc/development.md). */
-const IncludeTable& includeTable();
+/** The table in doc/development.md of the boundaries between this project's libraries. */
+IncludeTable includeTable(const std::filesystem::path& markdownFile);
 
 /** The includes in the libraries of folder `libs` that the table does not allow, each as
  * "library/src/File.cpp:12: what is wrong". A library without a row in the table is one, too. */

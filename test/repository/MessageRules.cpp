@@ -1,7 +1,6 @@
 #include "MessageRules.h"
 
 #include <algorithm>
-#include <iterator>
 #include <regex>
 
 #include "SourceTree.h"

@@ -136,10 +136,9 @@ TEST(SampleOverDds, makesTheMapOfTheRawlogToTheLastBit) {
   ASSERT_EQ(live.end(), kStopped) << live.said();
   EXPECT_EQ(sender.sent(), 48u);
 
-  const ProgramRun run = runProgram(
-      "rawlog2semantic-map", {"--config", (kSources / "config/maps/synthetic.ini").string(), "-o",
-                              (folder / "out").string(), rawlog.string()});
-  ASSERT_EQ(run.status, 0) << run.errors;
+  succeeded(runProgram("rawlog2semantic-map",
+                       {"--config", (kSources / "config/maps/synthetic.ini").string(), "-o",
+                        (folder / "out").string(), rawlog.string()}));
   EXPECT_TRUE(live.map() == semantic_octree::loadTree((folder / "out/map.semantic").string()));
   EXPECT_TRUE(live.folder.read("map.semantic") == folder.read("out/map.semantic"));
 }

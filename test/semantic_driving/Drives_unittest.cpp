@@ -8,7 +8,7 @@
 
 #include "PlainDrives.h"
 #include "Trial.h"
-#include "simulated_drive/DriveFiles.h"
+#include "simulated_drive/DriveLoop.h"
 
 using namespace plain_drives;
 using semantic_driving::DriveController;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "Plain.h"
-#include "simulated_drive/DriveFiles.h"
+#include "simulated_drive/DriveLoop.h"
 
 using namespace simulated_drive;
 using mrpt::math::TPose2D;

@@ -5,7 +5,6 @@
 #include <synthetic_world/Objects.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "../semantic_planning/PaintedWorld.h"

@@ -1,5 +1,4 @@
 #pragma once
-#include <synthetic_world/Scene.h>
 
 #include <utility>
 

@@ -2,7 +2,6 @@
 #include <map_folders/MapFolder.h>
 
 #include "RunProgram.h"
-#include "ShellCommand.h"
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
 
@@ -37,9 +36,8 @@ TEST(Plugin, mapsInAFolderWithinItsBudgetWhatItMapsInMemory) {
                                  "tile_size = 12.8\nfolder = " +
                                  (folder / "tiles").string() + "\n");
   const auto run = [&](const std::string& name) {
-    const ProgramRun host = runProgram(
-        PLUGIN_HOST, {kPlugin, (folder / (name + ".ini")).string(), (folder / name).string()});
-    EXPECT_EQ(host.status, 0) << host.errors;
+    const ProgramRun host = succeeded(runProgram(
+        PLUGIN_HOST, {kPlugin, (folder / (name + ".ini")).string(), (folder / name).string()}));
     return host;
   };
   const ProgramRun inMemory = run("memory"), inFolder = run("folder");

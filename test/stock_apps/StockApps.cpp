@@ -21,7 +21,7 @@ StockApps::StockApps() {
     fs::create_directory_symlink(fs::path(MSO_SOURCE_DIR) / name, folder / name);
 }
 
-CommandRun StockApps::run(const std::string& command, Plugin plugin) const {
+ProgramRun StockApps::run(const std::string& command, Plugin plugin) const {
   const std::string environment =
       plugin == Plugin::Preloaded ? "LD_PRELOAD='" + kPlugin + "' " : std::string();
   folder.write("command", "cd '" + folder.path().string() + "'\nexport HOME=\"$PWD\"\n" +

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "ShellCommand.h"
+#include "RunProgram.h"
 #include "TemporaryFolder.h"
 
 /** MRPT's applications as Debian ships them, in a folder of their own, where `config` and
@@ -21,7 +21,7 @@ class StockApps : public testing::Test {
   StockApps();
 
   /** Runs a shell command in the folder, without a terminal, for some minutes at most. */
-  CommandRun run(const std::string& command, Plugin plugin = Plugin::Absent) const;
+  ProgramRun run(const std::string& command, Plugin plugin = Plugin::Absent) const;
   /** The semantic octree that an application left below a folder; none if there is none. */
   std::optional<semantic_octree::SemanticOcTree> mapIn(const std::string& subfolder) const;
   /** The first PAIRS of actions and observations of one of mrpt-common's rawlogs.

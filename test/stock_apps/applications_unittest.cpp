@@ -18,7 +18,7 @@ class IcpSlam : public StockApps {
     SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
     rawlog = shortRawlog(kLaserRawlog, 60);
   }
-  CommandRun slam(const std::string& ini, Plugin plugin) const {
+  ProgramRun slam(const std::string& ini, Plugin plugin) const {
     return run("icp-slam '" + ini + "' '" + rawlog + "'", plugin);
   }
   std::string rawlog;
@@ -27,7 +27,7 @@ class IcpSlam : public StockApps {
 }  // namespace
 
 TEST_F(IcpSlam, aRealLaserScannerMakesASemanticOctree) {
-  const CommandRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Preloaded);
+  const ProgramRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Preloaded);
   ASSERT_EQ(slammed.status, 0) << slammed.output;
   const auto map = mapIn("icp-slam-output");
   ASSERT_TRUE(map) << slammed.output;
@@ -43,7 +43,7 @@ TEST_F(IcpSlam, aRealLaserScannerMakesASemanticOctree) {
 }
 
 TEST_F(IcpSlam, withoutThePluginThereIsNoSuchMapWhichOnlyNewerReleasesSay) {
-  const CommandRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Absent);
+  const ProgramRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Absent);
   EXPECT_EQ(slammed.status != 0, kMrptRefusesUnknownMaps) << slammed.output;
   EXPECT_EQ(contains(slammed.output, "semanticOctoMap_count"), kMrptRefusesUnknownMaps);
   EXPECT_FALSE(mapIn("icp-slam-output"));
@@ -54,7 +54,7 @@ TEST_F(IcpSlam, withoutThePluginThereIsNoSuchMapWhichOnlyNewerReleasesSay) {
 TEST_F(IcpSlam, aMisspelledOptionStopsItWithTheReason) {
   const std::string ini =
       configWith("icp-slam.ini", "MappingApplication_semanticOctoMap_00_insertOpts", "maxRnage=9");
-  const CommandRun slammed = slam(ini, Plugin::Preloaded);
+  const ProgramRun slammed = slam(ini, Plugin::Preloaded);
   EXPECT_NE(slammed.status, 0);
   EXPECT_TRUE(contains(slammed.output, "maxRnage")) << slammed.output;
 }
@@ -67,7 +67,7 @@ class RbpfSlam : public StockApps {
     SKIP_WITHOUT_APP("rbpf-slam");
     SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
   }
-  CommandRun slam() const {
+  ProgramRun slam() const {
     return run("rbpf-slam config/stock-apps/rbpf-slam.ini '" + shortRawlog(kLaserRawlog, 60) + "'",
                Plugin::Preloaded);
   }
@@ -76,7 +76,7 @@ class RbpfSlam : public StockApps {
 }  // namespace
 
 TEST_F(RbpfSlam, eachParticleBuildsWeighsAndCopiesASemanticOctree) {
-  const CommandRun slammed = slam();
+  const ProgramRun slammed = slam();
   ASSERT_EQ(slammed.status, 0) << slammed.output;
   const auto map = mapIn("rbpf-slam-output");
   ASSERT_TRUE(map) << slammed.output;
@@ -95,7 +95,7 @@ class PfLocalization : public StockApps {
     SKIP_WITHOUT_APP("pf-localization");
     SKIP_WITHOUT("/usr/share/mrpt/datasets/localization_demo.simplemap.gz", "mrpt-common");
   }
-  CommandRun localize() const {
+  ProgramRun localize() const {
     return run("pf-localization config/stock-apps/pf-localization.ini", Plugin::Preloaded);
   }
 };
@@ -119,7 +119,7 @@ double distanceToEnd(const Estimate& e) { return std::hypot(e.x - 15.904, e.y + 
 }  // namespace
 
 TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding) {
-  const CommandRun localized = localize();
+  const ProgramRun localized = localize();
   ASSERT_EQ(localized.status, 0) << localized.output;
   ASSERT_TRUE(mapIn("pf-localization-output_000_0005000"));
   const Estimate end = lastEstimate(localized.output);
@@ -136,7 +136,7 @@ class Observations2Map : public StockApps {
     ASSERT_TRUE(villageFrames(2).saveToFile((folder / "village.simplemap").string()));
     std::filesystem::create_directory(folder / "out");
   }
-  CommandRun make() const {
+  ProgramRun make() const {
     return run("observations2map config/stock-apps/observations2map.ini village.simplemap out/map",
                Plugin::Preloaded);
   }
@@ -172,7 +172,7 @@ double shareOfLabelsIn(const semantic_octree::SemanticOcTree& map) {
 }  // namespace
 
 TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
-  const CommandRun made = make();
+  const ProgramRun made = make();
   ASSERT_EQ(made.status, 0) << made.output;
   const auto map = mapIn("out");
   ASSERT_TRUE(map) << made.output;
@@ -199,7 +199,7 @@ namespace {
 class RawlogEdit : public StockApps {
  protected:
   void SetUp() override { SKIP_WITHOUT_APP("rawlog-edit"); }
-  CommandRun edit(const std::string& arguments) const { return run("rawlog-edit " + arguments); }
+  ProgramRun edit(const std::string& arguments) const { return run("rawlog-edit " + arguments); }
 };
 
 std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const std::filesystem::path& file) {
@@ -215,21 +215,21 @@ const char* const kVillage = "rawlog-samples/village.rawlog";
 }  // namespace
 
 TEST_F(RawlogEdit, listsRawlogsWithLabeledClouds) {
-  const CommandRun listed = edit(std::string("-p ") + kPlugin + " --info -i " + kVillage);
+  const ProgramRun listed = edit(std::string("-p ") + kPlugin + " --info -i " + kVillage);
   EXPECT_EQ(listed.status, 0);
   EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 72"));
   EXPECT_TRUE(contains(listed.output, "LIDAR /     24")) << listed.output;
 }
 
 TEST_F(RawlogEdit, describesTheClouds) {
-  const CommandRun cut = edit(std::string("-p ") + kPlugin + " --describe -i " + kVillage);
+  const ProgramRun cut = edit(std::string("-p ") + kPlugin + " --describe -i " + kVillage);
   EXPECT_TRUE(contains(cut.output, "labeled_cloud::CObservationLabeledCloud"));
   EXPECT_TRUE(contains(cut.output, "road: ")) << cut.output.substr(0, 3000);
 }
 
 TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
   if (!kRawlogEditDrops) GTEST_SKIP() << "rawlog-edit of this MRPT drops nothing";
-  const CommandRun cut =
+  const ProgramRun cut =
       edit(std::string("-p ") + kPlugin + " --cut --from-index 3 --to-index 8 -i " + kVillage +
            " -o cut.rawlog");
   ASSERT_EQ(cut.status, 0) << cut.output;
@@ -249,7 +249,7 @@ TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
 
 TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
   if (!kRawlogEditDrops) GTEST_SKIP() << "rawlog-edit of this MRPT drops nothing";
-  const CommandRun kept = edit(std::string("-p ") + kPlugin + " --keep-label LIDAR -i " + kVillage +
+  const ProgramRun kept = edit(std::string("-p ") + kPlugin + " --keep-label LIDAR -i " + kVillage +
                                " -o lidar.rawlog");
   ASSERT_EQ(kept.status, 0) << kept.output;
   const auto clouds = observationsOf(folder / "lidar.rawlog");
@@ -259,7 +259,7 @@ TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
 }
 
 TEST_F(RawlogEdit, withoutThePluginTheRawlogEndsAtTheFirstCloudAndTheStatusIsZero) {
-  const CommandRun listed = edit(std::string("--info -i ") + kVillage);
+  const ProgramRun listed = edit(std::string("--info -i ") + kVillage);
   EXPECT_EQ(listed.status, 0);
   EXPECT_TRUE(contains(listed.output, "which is not registered"));
   EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 2"));

@@ -31,7 +31,7 @@ TEST_F(StockApps, theCommandsOfTheirPageWorkOneAfterTheOther) {
   std::filesystem::create_directory_symlink(MSO_LIB_DIR, folder / "build/lib");
   std::filesystem::create_directory_symlink(MSO_BIN_DIR, folder / "build/bin");
   folder.write("page.sh", commandsOf(MSO_SOURCE_DIR "/doc/handbook/stock-applications.md"));
-  const CommandRun read = run("sh page.sh");
+  const ProgramRun read = run("sh page.sh");
   EXPECT_EQ(read.status, 0) << read.output;
   for (const char* made :
        {"icp-slam-output/_finalmaps_.txt_semantic_map__CSemanticOctoMap_01.semantic",

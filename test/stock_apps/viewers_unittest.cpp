@@ -22,7 +22,7 @@ class Viewers : public StockApps {
   /** The screen with a viewer on it, after a click at (x, y) and some turns of the wheel. */
   cv::Mat screenOf(const std::string& viewer, cv::Point click, int scroll = 0) const {
     std::filesystem::remove(folder / "screen.png");
-    const CommandRun shown = run("xvfb-run -a -s '-screen 0 1280x800x24' " MSO_SOURCE_DIR
+    const ProgramRun shown = run("xvfb-run -a -s '-screen 0 1280x800x24' " MSO_SOURCE_DIR
                                  "/test/stock_apps/viewer.sh screen.png " +
                                  std::to_string(click.x) + " " + std::to_string(click.y) + " " +
                                  std::to_string(scroll) + " " + viewer);
@@ -48,7 +48,7 @@ class Viewers : public StockApps {
                  "[planner]\nvehicle = config/vehicles/robot.yaml\n[drive]\n"
                  "reactive = config/reactive/robot.ini\ntimeLimit = " +
                      std::to_string(seconds) + "\n");
-    const CommandRun drive =
+    const ProgramRun drive =
         run(MSO_BIN_DIR
             "/semantic-map-drive --start=-14,-19,10 --goal=-6,-17,20 "
             "--order config/orders/synthetic.yaml --config drive.ini --output drive "

@@ -12,10 +12,16 @@
 #include <fstream>
 #include <string>
 
+#include "FolderTest.h"
 #include "FullDisk.h"
-#include "TemporaryFolder.h"
 
 namespace {
+
+using FileLocks = FolderTest;
+using OutputFolders = FolderTest;
+using ManyOutputs = FolderTest;
+using ScratchFiles = FolderTest;
+using StagedFiles = FolderTest;
 
 inline void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file) << text;
@@ -66,8 +72,7 @@ extern "C" int rename(const char* from, const char* to) noexcept {
   return result;
 }
 
-TEST(StagedFile, withoutCommitLeavesWhatWasThere) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, withoutCommitLeavesWhatWasThere) {
   folder.write("a", "before");
   {
     StagedFile file(folder / "a");
@@ -77,15 +82,13 @@ TEST(StagedFile, withoutCommitLeavesWhatWasThere) {
   EXPECT_EQ(entriesOf(folder.path()), 1u);
 }
 
-TEST(StagedFile, namesWhatCannotBeWritten) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, namesWhatCannotBeWritten) {
   EXPECT_TRUE(
       contains(errorOf([&] { StagedFile(folder / "none/a"); }), "none/a: cannot be written"));
   EXPECT_TRUE(contains(errorOf([&] { StagedFile file(folder.path()); }), "it is a folder"));
 }
 
-TEST(StagedFile, twoWritersOfOneFileDoNotMeetAndTheLastOneWins) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, twoWritersOfOneFileDoNotMeetAndTheLastOneWins) {
   {
     StagedFile first(folder / "a.txt"), second(folder / "a.txt");
     EXPECT_NE(first.path(), second.path());
@@ -100,8 +103,7 @@ TEST(StagedFile, twoWritersOfOneFileDoNotMeetAndTheLastOneWins) {
   EXPECT_EQ(entriesOf(folder.path()), 1u);
 }
 
-TEST(StagedFile, processesThatWriteOneFileAtOnceLeaveItWholeAndNothingElse) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, processesThatWriteOneFileAtOnceLeaveItWholeAndNothingElse) {
   constexpr std::size_t kLength = 200000;
   std::vector<pid_t> writers;
   for (const char letter : {'a', 'b', 'c', 'd'})
@@ -119,8 +121,7 @@ TEST(StagedFile, processesThatWriteOneFileAtOnceLeaveItWholeAndNothingElse) {
   EXPECT_EQ(entriesOf(folder.path()), 1u);
 }
 
-TEST(StagedFile, leavesWhatIsTheUsersOwn) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, leavesWhatIsTheUsersOwn) {
   for (const char* name : {"a.tmp", ".unfinished-notes", ".unfinished-", ".unfinished-a_c123"})
     folder.write(name, "mine");
   fs::create_symlink(folder / "a.tmp", folder / ".unfinished-abc123");
@@ -131,8 +132,7 @@ TEST(StagedFile, leavesWhatIsTheUsersOwn) {
   EXPECT_EQ(folder.read("a.tmp"), "mine");
 }
 
-TEST(StagedFile, nothingButARegularFileIsReplaced) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, nothingButARegularFileIsReplaced) {
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   fs::create_symlink("nowhere", folder / "dangling");
   for (const std::string name : {"/dev/null", "/dev/full"}) {
@@ -149,8 +149,7 @@ TEST(StagedFile, nothingButARegularFileIsReplaced) {
   EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
 }
 
-TEST(StagedFile, aLinkStaysAndWhatItLeadsToIsReplaced) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, aLinkStaysAndWhatItLeadsToIsReplaced) {
   folder.write("elsewhere/a", "before");
   fs::create_symlink("elsewhere/a", folder / "link");
   {
@@ -162,16 +161,14 @@ TEST(StagedFile, aLinkStaysAndWhatItLeadsToIsReplaced) {
   EXPECT_EQ(folder.read("elsewhere/a"), "after");
 }
 
-TEST(StagedFile, keepsThePermissionsOfWhatItReplaces) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, keepsThePermissionsOfWhatItReplaces) {
   fs::permissions(folder.write("a", "secret"), fs::perms::owner_read | fs::perms::owner_write);
   StagedFile file(folder / "a"), other(folder / "b");
   EXPECT_EQ(fs::status(file.path()).permissions(), fs::status(folder / "a").permissions());
   EXPECT_NE(fs::status(other.path()).permissions(), fs::status(folder / "a").permissions());
 }
 
-TEST(StagedFile, isOnTheDiskBeforeItTakesItsName) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, isOnTheDiskBeforeItTakesItsName) {
   StagedFile file(folder / "a");
   write(file.path(), "text");
   const std::string staged = file.path();
@@ -181,18 +178,16 @@ TEST(StagedFile, isOnTheDiskBeforeItTakesItsName) {
                                                    "sync " + folder.path().string()}));
 }
 
-TEST(StagedFile, ofAFullDiskIsNotThere) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, ofAFullDiskIsNotThere) {
   const std::string error = errorOf([&] {
     const FullDisk full(10);
     strict_files::writeText(folder / "a", "more than ten bytes");
   });
-  EXPECT_EQ(error, (folder / "a").string() + ": cannot be written");
+  EXPECT_EQ(error, path("a") + ": cannot be written");
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(Outputs, ofAProcessThatWasKilledAreRemovedByTheNext) {
-  const TemporaryFolder folder;
+TEST_F(ManyOutputs, ofAProcessThatWasKilledAreRemovedByTheNext) {
   const pid_t killed = inChild([&] {
     const OutputFolder output(folder.path());
     const StagedFile file(folder / "a");
@@ -206,8 +201,7 @@ TEST(Outputs, ofAProcessThatWasKilledAreRemovedByTheNext) {
   EXPECT_EQ(entriesOf(folder.path()), 0u);
 }
 
-TEST(Outputs, ofProcessesThatLiveAreNotTouched) {
-  const TemporaryFolder folder;
+TEST_F(ManyOutputs, ofProcessesThatLiveAreNotTouched) {
   const OutputFolder output(folder.path());
   const StagedFile file(folder / "a");
   write(output.staged("b"), "half");
@@ -220,8 +214,7 @@ TEST(Outputs, ofProcessesThatLiveAreNotTouched) {
   EXPECT_TRUE(fs::exists(output.staged("b")));
 }
 
-TEST(Outputs, areGoneWhenAProcessLeavesWithoutThem) {
-  const TemporaryFolder folder;
+TEST_F(ManyOutputs, areGoneWhenAProcessLeavesWithoutThem) {
   folder.write("a", "before");
   EXPECT_EQ(statusOf(inChild([&]() -> int {
               const OutputFolder output(folder / "out"), again(folder.path());
@@ -234,8 +227,7 @@ TEST(Outputs, areGoneWhenAProcessLeavesWithoutThem) {
   EXPECT_EQ(folder.read("a"), "before");
 }
 
-TEST(OutputFolder, filesAreOnTheDiskBeforeAnyTakesItsPlace) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolders, filesAreOnTheDiskBeforeAnyTakesItsPlace) {
   OutputFolder output(folder.path());
   for (const char* name : {"a", "b"}) write(output.staged(name), "text");
   callsToDisk.clear();
@@ -246,8 +238,7 @@ TEST(OutputFolder, filesAreOnTheDiskBeforeAnyTakesItsPlace) {
   EXPECT_EQ(callsToDisk[4], "sync " + folder.path().string());
 }
 
-TEST(OutputFolder, ofTwoProcessesAtOnceTheFilesAreOfOne) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolders, ofTwoProcessesAtOnceTheFilesAreOfOne) {
   const std::vector<std::string> names = {"a", "b", "c"};
   const auto commitIn = [&](const std::string& text, useconds_t wait, useconds_t slowness) {
     return inChild([&] {
@@ -278,8 +269,7 @@ std::string readAt(const ScratchFile& file, std::uint64_t place, std::size_t siz
 
 }  // namespace
 
-TEST(ScratchFile, givesBackWhatWasWrittenAndLeavesNothingBehind) {
-  const TemporaryFolder folder;
+TEST_F(ScratchFiles, givesBackWhatWasWrittenAndLeavesNothingBehind) {
   {
     ScratchFile file(folder.path());
     const std::string first(100000, 'a'), second(300, 'b');
@@ -295,8 +285,7 @@ TEST(ScratchFile, givesBackWhatWasWrittenAndLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(ScratchFile, givesBackToTheDiskWhatIsDiscarded) {
-  const TemporaryFolder folder;
+TEST_F(ScratchFiles, givesBackToTheDiskWhatIsDiscarded) {
   ScratchFile file(folder.path());
   const std::string much(1 << 20, 'a');
   const auto a = file.append(much.data(), much.size());
@@ -311,13 +300,11 @@ TEST(ScratchFile, givesBackToTheDiskWhatIsDiscarded) {
   EXPECT_LT(bytesOnDisk(), much.size() / 2);
 }
 
-TEST(ScratchFile, saysWhereItCannotBe) {
-  const TemporaryFolder folder;
+TEST_F(ScratchFiles, saysWhereItCannotBe) {
   EXPECT_TRUE(contains(errorOf([&] { ScratchFile(folder / "absent"); }), folder / "absent"));
 }
 
-TEST(ScratchFile, doesNotReadBeyondItsEnd) {
-  const TemporaryFolder folder;
+TEST_F(ScratchFiles, doesNotReadBeyondItsEnd) {
   ScratchFile file(folder.path());
   file.append("abc", 3);
   char bytes[10];
@@ -327,8 +314,7 @@ TEST(ScratchFile, doesNotReadBeyondItsEnd) {
 using strict_files::FileLock;
 using Kind = FileLock::Kind;
 
-TEST(FileLock, isHeldByManyReadersOrOneWriter) {
-  const TemporaryFolder folder;
+TEST_F(FileLocks, isHeldByManyReadersOrOneWriter) {
   const auto file = folder / "lock";
   {
     const FileLock one(file, Kind::Shared), another(file, Kind::Shared);
@@ -343,22 +329,19 @@ TEST(FileLock, isHeldByManyReadersOrOneWriter) {
   EXPECT_FALSE(FileLock::tryTo(file, Kind::Exclusive));
 }
 
-TEST(FileLock, isEverybodysWhereItCannotBeMade) {
-  const TemporaryFolder folder;
+TEST_F(FileLocks, isEverybodysWhereItCannotBeMade) {
   EXPECT_TRUE(FileLock::tryTo(folder / "nowhere/lock", Kind::Exclusive));
   EXPECT_TRUE(FileLock::tryTo(folder / "nowhere/lock", Kind::Exclusive));
 }
 
-TEST(StagedFile, mayComeToTheDiskLater) {
-  const TemporaryFolder folder;
+TEST_F(StagedFiles, mayComeToTheDiskLater) {
   strict_files::StagedFile file(folder / "later.txt");
   std::ofstream(file.path()) << "content";
   file.commit(strict_files::StagedFile::Disk::Later);
   EXPECT_EQ(folder.read("later.txt"), "content");
 }
 
-TEST(OutputFolder, nothingTakesItsPlaceWhereOneOfThemCannot) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolders, nothingTakesItsPlaceWhereOneOfThemCannot) {
   folder.write("a", "before");
   fs::create_directory(folder / "b");
   OutputFolder output(folder.path());
@@ -367,8 +350,7 @@ TEST(OutputFolder, nothingTakesItsPlaceWhereOneOfThemCannot) {
   EXPECT_EQ(folder.read("a"), "before");
 }
 
-TEST(OutputFolder, filesTakeTheirPlaceTogether) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolders, filesTakeTheirPlaceTogether) {
   folder.write("out/a", "before");
   folder.write("out/b", "before");
   folder.write("out/other", "before");
@@ -384,8 +366,7 @@ TEST(OutputFolder, filesTakeTheirPlaceTogether) {
   EXPECT_EQ(entriesOf(folder / "out"), 2u);
 }
 
-TEST(OutputFolder, withoutCommitIsAsBefore) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolders, withoutCommitIsAsBefore) {
   folder.write("out/a", "before");
   {
     OutputFolder output(folder / "out"), created(folder / "new/below");
@@ -396,8 +377,7 @@ TEST(OutputFolder, withoutCommitIsAsBefore) {
   EXPECT_FALSE(fs::exists(folder / "new/below"));
 }
 
-TEST(OutputFolder, namesAFolderThatCannotBeWritten) {
-  const TemporaryFolder folder;
+TEST_F(OutputFolders, namesAFolderThatCannotBeWritten) {
   const fs::path file = folder.write("file", "");
   EXPECT_TRUE(
       contains(errorOf([&] { OutputFolder output(file); }), file.string() + ": cannot write"));

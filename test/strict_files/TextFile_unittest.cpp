@@ -12,12 +12,13 @@
 
 #include "CommaHost.h"
 #include "CsvTable.h"
-#include "TemporaryFolder.h"
+#include "FolderTest.h"
 
 using namespace strict_files;
 
-TEST(TextFile, comesBackByteForByte) {
-  const TemporaryFolder folder;
+using TextFile = FolderTest;
+
+TEST_F(TextFile, comesBackByteForByte) {
   const std::string text("a\r\n\0b\xFF", 6);
   writeText(folder / "a.txt", text);
   EXPECT_EQ(readText(folder / "a.txt"), text);
@@ -26,13 +27,12 @@ TEST(TextFile, comesBackByteForByte) {
   EXPECT_EQ(readText(folder / "a.txt"), "");
 }
 
-TEST(TextFile, thatCannotBeWrittenIsNamed) {
+TEST_F(TextFile, thatCannotBeWrittenIsNamed) {
   EXPECT_EQ(errorOf([] { writeText("/nowhere/a.txt", "a"); }),
             "/nowhere/a.txt: cannot be written (does the folder exist?)");
 }
 
-TEST(TextFile, thatCannotBeReadIsNamed) {
-  const TemporaryFolder folder;
+TEST_F(TextFile, thatCannotBeReadIsNamed) {
   EXPECT_EQ(errorOf([] { readText("/nowhere/a.txt"); }), "/nowhere/a.txt: cannot be read");
   const std::string path = folder.path().string();
   EXPECT_EQ(errorOf([&] { readText(path); }), path + ": cannot be read");

@@ -5,7 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "TemporaryFolder.h"
+#include <algorithm>
 
 namespace {
 
@@ -13,7 +13,7 @@ void redirect(int descriptor, const std::filesystem::path& file, int flags) {
   dup2(open(file.c_str(), flags, 0600), descriptor);
 }
 
-[[noreturn]] void execute(const std::string& program, const std::vector<std::string>& arguments,
+[[noreturn]] void execute(const std::string& program, const Words& arguments,
                           const TemporaryFolder& folder) {
   redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
   redirect(STDOUT_FILENO, folder / "output", O_WRONLY | O_CREAT);
@@ -27,7 +27,7 @@ void redirect(int descriptor, const std::filesystem::path& file, int flags) {
 
 }  // namespace
 
-ProgramRun runProgram(const std::string& name, const std::vector<std::string>& arguments) {
+ProgramRun runProgram(const std::string& name, const Words& arguments) {
   const TemporaryFolder folder;
   const pid_t child = fork();
   if (child == 0) execute(std::filesystem::path(MSO_BIN_DIR) / name, arguments, folder);
@@ -36,4 +36,20 @@ ProgramRun runProgram(const std::string& name, const std::vector<std::string>& a
   wait4(child, &status, 0, &usage);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), folder.read("output"),
           folder.read("errors"), usage.ru_maxrss};
+}
+
+ProgramRun runCommand(const std::string& command) {
+  return runProgram("/bin/sh", {"-c", command + " 2>&1"});
+}
+
+ProgramRun succeeded(ProgramRun run) {
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  return run;
+}
+
+void expectRefusal(const ProgramRun& run, const Words& parts) {
+  EXPECT_EQ(run.status, 1) << run.errors;
+  EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+  for (const std::string& part : parts)
+    EXPECT_TRUE(contains(run.errors, part)) << part << " is not in: " << run.errors;
 }

@@ -15,10 +15,8 @@ inline std::string missingOf(std::initializer_list<const char*> names) {
 }
 
 /** Runs a program with a screen of its own (it takes xvfb-run and xauth). */
-inline ProgramRun runInX(const std::vector<std::string>& command) {
-  std::vector<std::string> all = {"-a", "-s", "-screen 0 1280x900x24"};
-  all.insert(all.end(), command.begin(), command.end());
-  return runProgram("/usr/bin/xvfb-run", all);
+inline ProgramRun runInX(const Words& command) {
+  return runProgram("/usr/bin/xvfb-run", joined({"-a", "-s", "-screen 0 1280x900x24"}, command));
 }
 
 /** Whether programs were built with windows. */

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "Choice.h"
+#include "Options.h"
 
 namespace label_noise {
 

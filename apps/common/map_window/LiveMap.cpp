@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "AskPanel.h"
 #include "ShowPanel.h"
 #include "Widgets.h"
 

@@ -1,14 +1,14 @@
 #include "DriveLoop.h"
 
 #include <mrpt/core/Clock.h>
+#include <mrpt/core/format.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_types/ClassTable.h>
 #include <synthetic_world/Solids.h>
 
 #include <cmath>
-#include <cstdio>
 
-#include "measuring/Stopwatch.h"
+#include "measuring/Measuring.h"
 
 namespace simulated_drive {
 
@@ -45,12 +45,6 @@ Eigen::Isometry3d isometry(const TPose2D& pose) {
   T.translation() << pose.x, pose.y, 0;
   T.rotate(Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ()));
   return T;
-}
-
-std::string meters(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f m", value);
-  return text;
 }
 
 void setClock(double seconds) {
@@ -214,7 +208,8 @@ bool DriveLoop::endAtGoal() {
   const TPose2D &p = m_robot.state().pose, &goal = guide().goal();
   const double off = std::hypot(p.x - goal.x, p.y - goal.y);
   if (!m_record.exactPose && off >= m_config.guide.atGoal)
-    return end(DriveEnd::Astray, "it believes to have arrived, but is " + meters(off) + " off");
+    return end(DriveEnd::Astray,
+               mrpt::format("it believes to have arrived, but is %.2f m off", off));
   return end(guide().refusal() ? DriveEnd::Nearest : DriveEnd::Arrived, m_navigator.reason());
 }
 

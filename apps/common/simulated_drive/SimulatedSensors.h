@@ -2,8 +2,6 @@
 #include <mrpt/obs/CObservation.h>
 #include <synthetic_world/World.h>
 
-#include <optional>
-
 #include "DriveConfig.h"
 
 namespace simulated_drive {

@@ -14,7 +14,6 @@ using semantic_types::ClassTable;
 using semantic_types::kNoClass;
 using strict_files::Choices;
 using strict_files::OptionList;
-using strict_files::above;
 using strict_files::atLeast;
 using strict_files::require;
 
@@ -98,8 +97,7 @@ void NetworkOptions::describeInput(OptionList& list) {
            "stretch: to the input's size; width: scaled to its width, top rows are cut off, or the "
            "last row is repeated below");
   list.add("channels", channels, "", "their order");
-  list.add("scale", scale, "", above(0), "each channel is (value * scale - mean) / std");
-  list.add("mean", mean, "", "of each channel");
+  list.add("mean", mean, "", "each channel is (value - mean) / std, its value from 0 to 1");
   list.add("std", deviation, "", "of each channel, above 0");
 }
 

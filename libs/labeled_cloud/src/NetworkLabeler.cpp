@@ -156,7 +156,7 @@ cv::Mat fit(const cv::Mat& image, const NetworkOptions& o, LabelImage::Cells& ce
 
 cv::Mat normalized(cv::Mat image, const NetworkOptions& o) {
   if (o.channels == NetworkOptions::Channels::Rgb) cv::cvtColor(image, image, cv::COLOR_BGR2RGB);
-  image.convertTo(image, CV_32FC3, o.scale);
+  image.convertTo(image, CV_32FC3, 1 / 255.0);
   cv::subtract(image, cv::Scalar(o.mean[0], o.mean[1], o.mean[2]), image);
   cv::divide(image, cv::Scalar(o.deviation[0], o.deviation[1], o.deviation[2]), image);
   return image;

@@ -1,7 +1,6 @@
 #include <semantic_abstraction/Abstraction.h>
 
 #include <algorithm>
-#include <cstring>
 #include <deque>
 #include <iterator>
 #include <stdexcept>

@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <istream>
 #include <string>
 #include <vector>
 

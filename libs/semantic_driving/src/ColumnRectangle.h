@@ -1,9 +1,6 @@
 #pragma once
 #include <semantic_planning/ground/Ground.h>
 
-#include <algorithm>
-#include <cstdint>
-
 namespace semantic_driving {
 
 /** The columns from one corner to another, numbered row by row. */

@@ -114,7 +114,7 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
     m_reactiveAgain = seconds + kReactivePause;
     return m_tracker.command(state, obstacles, speedLimit);
   }
-  const double curve = std::sqrt(m_tracker.options().maxSideAcceleration *
+  const double curve = std::sqrt(m_tracker.options().maxAcceleration *
                                  std::abs(c.speed / std::max(1e-6, std::abs(c.turn))));
   const double onPath = m_tracker.speedBefore(m_tracker.options().lookAhead(), speedLimit);
   const double speed = std::min({c.speed, onPath, curve});

@@ -1,9 +1,9 @@
+#include <mrpt/core/format.h>
 #include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Motion.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "Recovery.h"
@@ -40,9 +40,7 @@ bool isQuestion(const Action& action) {
 
 /** As poses are given on command lines. */
 std::string textOf(const TPose2D& pose) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.2f,%.2f,%.0f", pose.x, pose.y, pose.phi * 180 / M_PI);
-  return text;
+  return mrpt::format("%.2f,%.2f,%.0f", pose.x, pose.y, pose.phi * 180 / M_PI);
 }
 
 std::string reasonOf(const Exploration& enclosed) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace semantic_driving {
 
@@ -16,9 +15,7 @@ using strict_files::OptionList;
 void DriveOptions::describe(OptionList& list) {
   list.add("max_speed", maxSpeed, "m/s", above(0), "highest speed");
   list.add("max_acceleration", maxAcceleration, "m/s^2", above(0),
-           "along the way; stops are planned with 0.8 of it");
-  list.add("max_side_acceleration", maxSideAcceleration, "m/s^2", above(0), "in curves");
-  list.add("max_jerk", maxJerk, "m/s^3", above(0).orInfinite(), "along the way; inf: no limit");
+           "along the way and in curves; stops are planned with 0.8 of it");
   list.add("slow_rank", slowRank, "", atLeast(0),
            "on classes of this rank (0: the best) and worse ones slow_rank_speed holds");
   list.add("slow_rank_speed", slowRankSpeed, "m/s", above(0).orInfinite(),
@@ -78,7 +75,7 @@ double bendOf(const DriveCommand& wanted, const Motion& motion) {
  * curve. \param off what the steering lacks, 1/m */
 double speedFor(double curvature, double off, const DriveOptions& limits) {
   constexpr double kWay = 0.2;  // m
-  double most = std::sqrt(limits.maxSideAcceleration / std::max(1e-9, std::abs(curvature)));
+  double most = std::sqrt(limits.maxAcceleration / std::max(1e-9, std::abs(curvature)));
   if (off > 0) most = std::min(most, kWay * limits.steeringRate() / off);
   return std::max(most, DriveOptions::kSlowest);
 }

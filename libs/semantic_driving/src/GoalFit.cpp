@@ -1,3 +1,4 @@
+#include <mrpt/core/format.h>
 #include <mrpt/math/wrap2pi.h>
 #include <semantic_driving/Explorer.h>
 #include <semantic_driving/GoalFit.h>
@@ -5,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "GroundFlood.h"
 #include "Surroundings.h"
@@ -162,10 +162,8 @@ std::string describe(const GoalMisfit& misfit, const TPose2D& goal,
   const std::string what = misfit.classId == semantic_types::kNoClass
                                ? "something of unknown class"
                                : classes.name(misfit.classId);
-  char text[160];
-  std::snprintf(text, sizeof text, "the goal (%.2f, %.2f) does not fit: %s is at (%.2f, %.2f)",
-                goal.x, goal.y, what.c_str(), misfit.at.x, misfit.at.y);
-  return text;
+  return mrpt::format("the goal (%.2f, %.2f) does not fit: %s is at (%.2f, %.2f)", goal.x, goal.y,
+                      what.c_str(), misfit.at.x, misfit.at.y);
 }
 
 }  // namespace semantic_driving

@@ -1,5 +1,7 @@
-#include <mrpt/math/wrap2pi.h>
 #include <semantic_driving/PathTracker.h>
+
+#include <mrpt/math/wrap2pi.h>
+#include <semantic_driving/Focus.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +106,7 @@ double PathTracker::speedAt(double s) const {
   const double onClass =
       place.classId < m_classSpeeds.size() ? m_classSpeeds[place.classId] : m_options.maxSpeed;
   return std::max(DriveOptions::kSlowest,
-                  std::min({onClass, std::sqrt(m_options.maxSideAcceleration / curve),
+                  std::min({onClass, std::sqrt(m_options.maxAcceleration / curve),
                             m_options.steeringRate() / change}));
 }
 
@@ -139,6 +141,43 @@ DriveCommand PathTracker::command(const DriveState& state, const ObstaclePoints&
                       kHeadingGain * std::abs(v) * heading;
   const double most = std::abs(v) / m_options.turningRadius;
   return {v, std::clamp(turn, -most, most)};
+}
+
+using semantic_octree::Region;
+
+namespace {
+
+/** In the middle of the meter that it is in: it moves rarely. */
+Eigen::Vector3d onMeters(const Eigen::Vector3d& place) { return place.array().floor() + 0.5; }
+
+Eigen::Vector3d placeAt(const DrivePath& path, double s) {
+  const semantic_planning::PathPoint p = path.at(s);
+  return {p.x, p.y, p.z};
+}
+
+}  // namespace
+
+void FocusOptions::describe(strict_files::OptionList& list) {
+  list.add("corridor", corridor, "m", strict_files::atLeast(0),
+           "on both sides of the path ahead, where the compressed tree has detail; 0: everywhere");
+}
+
+void FocusOptions::validate() const { strict_files::checkOptions(*this, "FocusOptions"); }
+
+std::vector<Region> regionsAhead(const DrivePath& path, double progress,
+                                 const Eigen::Vector3d& vehicle, const FocusOptions& options) {
+  constexpr double kFar = 1e6, kStretch = 3;  // m
+  constexpr double kAhead = 15;               // m of the path
+  if (!options.isOn()) return {};
+  const Eigen::Vector3d far = Eigen::Vector3d::Constant(kFar);
+  std::vector<Region> regions = {
+      {Region::Shape::Box, -far, far, 0, 0},
+      {Region::Shape::Sphere, onMeters(vehicle), far, options.around + std::sqrt(0.75), 1}};
+  const double end = path.empty() ? 0 : std::min(path.length(), progress + kAhead);
+  for (double s = kStretch * std::floor(progress / kStretch); s < end; s += kStretch)
+    regions.push_back({Region::Shape::Corridor, placeAt(path, s), placeAt(path, s + kStretch),
+                       options.corridor, 1});
+  return regions;
 }
 
 }  // namespace semantic_driving

@@ -29,9 +29,8 @@ struct NetworkOptions {
   int width = 0, height = 0;
   Fit fit = Fit::Stretch;
   Channels channels = Channels::Rgb;
-  /** Each channel of the input is (value * scale - mean) / deviation, value 0..255; in the order of
+  /** Each channel of the input is (value - mean) / deviation, value 0..1; in the order of
    * `channels`. */
-  double scale = 1 / 255.0;
   Eigen::Vector3d mean{0, 0, 0}, deviation{1, 1, 1};
   /** Name of the layer that answers; may be empty if there is only one. */
   std::string output;

@@ -2,13 +2,10 @@
 #include <semantic_octree/SemanticOcTree.h>
 #include <strict_files/OptionList.h>
 
-#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace map_pictures {
 

@@ -11,10 +11,8 @@ namespace semantic_driving {
 
 /** What a vehicle can do, and how it is driven. */
 struct DriveOptions {
-  double maxSpeed = 1.0;             ///< m/s
-  double maxAcceleration = 0.8;      ///< m/s^2, along the way; brakes, too
-  double maxSideAcceleration = 0.8;  ///< m/s^2, in curves
-  double maxJerk = 3;                ///< m/s^3, along the way; infinite: no limit
+  double maxSpeed = 1.0;         ///< m/s
+  double maxAcceleration = 0.8;  ///< m/s^2, along the way, also of the brakes, and in curves
   /** On ground of this rank and worse ones (0: the best), and unknown or forbidden ground, no
    * faster than this, m/s: walking pace. Infinite: no limit. */
   int slowRank = 3;
@@ -25,6 +23,8 @@ struct DriveOptions {
 
   double reactionTime = 0.3;  ///< seconds until a command has an effect
 
+  // For programs, without a name in files.
+  double maxJerk = 3;  ///< m/s^3, along the way; infinite: no limit
   /** The least radius that the vehicle drives, and what is kept free around its footprint on the
    * way ahead, meters: setFor() takes both from vehicle and map. */
   double turningRadius = 0.8, margin = 0.1;

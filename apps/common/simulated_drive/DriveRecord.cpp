@@ -1,13 +1,13 @@
-#include "DriveFiles.h"
+#include "DriveRecord.h"
 
 #include <mrpt/math/wrap2pi.h>
+#include <synthetic_world/Solids.h>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "DriveRecord.h"
-#include "measuring/Quantile.h"
+#include "measuring/Measuring.h"
 
 namespace simulated_drive {
 
