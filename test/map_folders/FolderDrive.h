@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "RandomScans.h"
 #include "FolderTest.h"
+#include "RandomScans.h"
 
 namespace folder_drive {
 

@@ -12,9 +12,9 @@ namespace labeled_cloud {
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
 using semantic_types::kNoClass;
+using strict_files::atLeast;
 using strict_files::Choices;
 using strict_files::OptionList;
-using strict_files::atLeast;
 using strict_files::require;
 
 namespace {
