@@ -1,6 +1,8 @@
 #pragma once
 #include <synthetic_world/World.h>
 
+#include "TemporaryFolder.h"
+
 /** Worlds so simple that the answers are known. */
 namespace small_world {
 
