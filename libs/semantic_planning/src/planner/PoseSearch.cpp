@@ -171,7 +171,7 @@ std::vector<PathPoint> PoseSearch::joined() const {
 std::vector<PathPoint> wayBetween(const GroundPose& start, const GroundPose& goal,
                                   const CollisionChecker& checker, const ClassPrices& prices) {
   constexpr double kBeside = 20, kReach = 15, kWeight = 2.4;  // m, m
-  constexpr int kPoses = 6000, kPosesAfter = 300, kShare = 3;
+  constexpr int kPoses = 4000, kPosesAfter = 300, kShare = 3;
   constexpr Length kMost = Length{1} << 62;
   const double turn = checker.reedsShepp().turningRadius(),
                distance = std::hypot(goal.pose.x - start.pose.x, goal.pose.y - start.pose.y);
