@@ -256,6 +256,7 @@ int gapsAlong(const cv::Mat& picture, int column) {
 TEST_F(SemanticMapView, HasPanelsBesideEachOtherAndTheMapsMiddle) {
   SKIP_WITHOUT_WINDOWS();
   folder.write("robot.tum", "0 -8 -7 0 0 0 0 1\n1 8 -7 0 0 0 0 1\n");
+  folder.write("order.yaml", "best_to_worst: [road, grass]\n");
   const std::vector<std::string> files = {path("map.semantic"), path("robot.tum")};
   for (const cv::Size window : {cv::Size(1280, 720), cv::Size(1000, 600)}) {
     const auto picture = [&](const std::vector<std::string>& more) {
@@ -278,7 +279,7 @@ TEST_F(SemanticMapView, HasPanelsBesideEachOtherAndTheMapsMiddle) {
     ASSERT_EQ(with.size(), window);
     const cv::Rect middle(270, 0, window.width - 270 - 320, window.height);
     EXPECT_EQ(cv::norm(with(middle), without(middle), cv::NORM_INF), 0);
-    const cv::Mat most = picture({"--compress"});
+    const cv::Mat most = picture({"--compress", "--order", path("order.yaml")});
     EXPECT_EQ(gapsAlong(most, 11), 3) << "map, clip, files";
     EXPECT_EQ(gapsAlong(most, window.width - 11), 3) << "cell, compress, path";
   }
