@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "LossyRadio.h"
 
@@ -27,6 +28,23 @@ TEST(MapStream, arrivesToTheLastBit) {
         EXPECT_TRUE(fileOf(receiver.map()) == fileOf(Abstraction(map).compressedMap())) << alpha;
         EXPECT_EQ(receiver.numLeaves(), Abstraction(map).compressedMap().getNumLeafNodes());
       }
+}
+
+TEST(MapStream, whatACalibratedMapStatesArrivesWithEachChange) {
+  SemanticOcTree map = smallPlace(someOptions(0.001));
+  MapSender sender(kStream);
+  MapReceiver receiver(kStream);
+  Radio there(1, 0.2), back(2, 0.2);
+  std::set<double> powers;
+  for (const double power : {0.5, 0.8, 1.2}) {
+    map.setCalibration({power, 0.1});
+    sender.setMap(map, false);
+    transmit(sender, receiver, there, back);
+    const SemanticOcTree compressed = Abstraction(map).compressedMap();
+    powers.insert(compressed.filterParameters().calibration.power);
+    EXPECT_TRUE(fileOf(receiver.map()) == fileOf(compressed)) << power;
+  }
+  EXPECT_EQ(powers.size(), 3u);
 }
 
 std::size_t heap() {

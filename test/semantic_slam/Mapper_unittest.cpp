@@ -197,6 +197,24 @@ TEST(Mapper, whatMovesIsNoEvidence) {
   EXPECT_EQ(still, errorInYard(kAhead, 3, isMover));
 }
 
+TEST(Mapper, beamsWithoutAReturnAreNoEvidence) {
+  const auto endWith = [](std::size_t beams) {
+    SemanticOcTree map(0.2, wallsAndCars());
+    Mapper mapper(map, localizing());
+    for (std::size_t i = 0; i < kAhead.truth.size(); ++i) {
+      SensorScan scan{yardFrom(kAhead.truth[i]), Eigen::Isometry3d::Identity(), 15};
+      for (std::size_t b = 0; b < beams; ++b) {
+        const double angle = 2 * M_PI * double(b) / double(beams);
+        scan.cloud.points.emplace_back(15.1 * std::cos(angle), 15.1 * std::sin(angle), 0.5);
+        scan.cloud.classes.push_back(semantic_types::kNoClass);
+      }
+      mapper.insert({scan}, mapper.locate({scan}, kAhead.odometry[i]), 0);
+    }
+    return mapper.T_map_odometry().matrix();
+  };
+  EXPECT_EQ(endWith(5000), endWith(0));
+}
+
 TEST(Mapper, withNothingSeenOdometryIsBelieved) {
   SemanticOcTree map(0.2, wallsAndCars());
   Mapper mapper(map, localizing());

@@ -59,6 +59,7 @@ Observation SimulatedSensors::camera(const World& world, const Eigen::Isometry3d
   const CameraFrame frame =
       renderCamera(world, T_world_robot * seen.T_robot_sensor, options, {m_config.seed, m_frame});
   seen.cloud = cloudOf(frame, options, m_config.emptyCarves ? options.maxRange : 0);
+  if (m_config.emptyCarves) seen.emptyFrom = options.maxRange * (1 - 1e-6);  // floats are rounded
   if (m_keepOriginals)
     seen.original = synthetic_rawlog::rangeScan(frame, options, seen.T_robot_sensor);
   return seen;

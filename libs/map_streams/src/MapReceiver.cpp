@@ -111,6 +111,7 @@ void MapReceiver::State::describe(std::size_t number, const std::string& content
     kind = std::move(newKind);
     coder = std::move(newCoder);
   }
+  kind->setCalibration({d.power, 0});
   checksum = d.checksum;
   for (const std::string& packet : unreadable) apply(packet);
   unreadable.clear();

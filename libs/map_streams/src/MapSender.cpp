@@ -44,7 +44,7 @@ struct MapSender::State {
   std::deque<std::size_t> lost;
   std::uint32_t heard = 0;  ///< the latest sequence that a receipt told of
 
-  std::vector<Packet> description(std::uint32_t checksum, const PartCoder& with,
+  std::vector<Packet> description(const SemanticOcTree& compressed, const PartCoder& with,
                                   const SemanticOcTree& like) const;
   void take(std::vector<Packet> all, std::size_t numDescription);
   void checkNext(const SemanticOcTree& empty, int rootDepth) const;
@@ -83,7 +83,7 @@ void MapSender::setMap(SemanticOcTree& map, bool isLast) {
   for (std::size_t i = 0; !isLast && i < parts->parts.size(); ++i)
     told.apply(parts->parts.part(i), s.header.revision + 1u);
   parts = nullptr;
-  std::vector<Packet> all = s.description(checksumOf(abstraction.compressedMap()), *coder, *kind);
+  std::vector<Packet> all = s.description(abstraction.compressedMap(), *coder, *kind);
   const std::size_t numDescription = all.size();
   std::move(data.begin(), data.end(), std::back_inserter(all));
   if (all.size() > kMaxPackets)
@@ -97,10 +97,12 @@ void MapSender::setMap(SemanticOcTree& map, bool isLast) {
 }
 
 /** What is told before the parts: of the first map how it is coded, too. */
-std::vector<Packet> MapSender::State::description(std::uint32_t checksum, const PartCoder& with,
+std::vector<Packet> MapSender::State::description(const SemanticOcTree& compressed,
+                                                  const PartCoder& with,
                                                   const SemanticOcTree& like) const {
   StreamDescription d;
-  d.checksum = checksum;
+  d.checksum = checksumOf(compressed);
+  d.power = compressed.filterParameters().calibration.power;
   d.rootDepth = with.rootDepth();
   if (header.revision == 0) {
     d.coding = with.toText();

@@ -238,6 +238,7 @@ std::string StreamDescription::compressed() const {
   fields.put(static_cast<std::uint8_t>(rootDepth));
   fields.putText(coding);
   fields.putText(kind);
+  fields.put(power);
   uLongf size = compressBound(text.size());
   std::string packed(size, '\0');
   compress2(reinterpret_cast<Bytef*>(&packed[0]), &size,
@@ -266,6 +267,8 @@ StreamDescription StreamDescription::of(const std::string& compressed) {
   if (d.rootDepth > kTreeDepth) throw std::runtime_error("altered: trees below the voxels");
   d.coding = fields.getText();
   d.kind = fields.getText();
+  d.power = fields.get<double>();
+  if (!(d.power > 0 && d.power <= 4)) throw std::runtime_error("altered: a power that cannot be");
   return d;
 }
 
@@ -302,7 +305,7 @@ namespace {
 
 /** CRC-32 of all that follows (4 bytes), "SO", version, type (1 byte), stream (4 bytes). */
 constexpr char kMark[] = {'S', 'O'};
-constexpr std::uint8_t kStreamVersion = 2;
+constexpr std::uint8_t kStreamVersion = 3;
 constexpr std::size_t kDatagramHeaderBytes = 12;
 
 std::uint32_t crcOf(const std::string& bytes, std::size_t from) {

@@ -60,6 +60,7 @@ struct StreamDescription {
   int rootDepth = 0;
   std::string coding;  ///< PartCoder::toText()
   std::string kind;    ///< an empty map as a file
+  double power = 1;    ///< of the map's calibration
 
   std::string compressed() const;
   /** \throw std::runtime_error altered. */

@@ -47,18 +47,19 @@ void Mapper::relocalize(const Eigen::Isometry3d& T_map_odometry) {
 
 Slam::Added Mapper::addToSlam(const std::vector<SensorScan>& seen,
                               const std::optional<Eigen::Isometry3d>& T_odometry_robot) {
-  if (seen.size() == 1 && m_isMover.empty())
+  if (seen.size() == 1 && m_isMover.empty() && !std::isfinite(seen[0].emptyFrom))
     return m_slam->add(seen[0].cloud, seen[0].T_robot_sensor, T_odometry_robot);
   return m_slam->add(evidenceOf(seen), Eigen::Isometry3d::Identity(), T_odometry_robot);
 }
 
-/** What does not move, frame of the robot. */
+/** Returns of what does not move, frame of the robot. */
 LabeledCloud Mapper::evidenceOf(const std::vector<SensorScan>& seen) const {
   LabeledCloud cloud;
   for (const SensorScan& scan : seen)
     for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
       const auto id = scan.cloud.classes.empty() ? semantic_types::kNoClass : scan.cloud.classes[i];
       if (id < m_isMover.size() && m_isMover[id]) continue;
+      if (scan.cloud.points[i].norm() >= scan.emptyFrom) continue;
       cloud.points.push_back(
           (scan.T_robot_sensor * scan.cloud.points[i].cast<double>()).cast<float>());
       cloud.classes.push_back(id);

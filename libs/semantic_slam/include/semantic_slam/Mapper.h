@@ -4,6 +4,7 @@
 #include <semantic_slam/Slam.h>
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -14,6 +15,9 @@ namespace semantic_slam {
 struct SensorScan {
   LabeledCloud cloud;  ///< sensor frame, meters
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
+  /** Points this far from the sensor or farther stand for beams without a return: they carve, and
+   * are no evidence of where the robot is. m */
+  double emptyFrom = std::numeric_limits<double>::infinity();
 };
 
 /** What a Mapper does with scans. */
