@@ -173,6 +173,12 @@ TEST_F(RoadInGrass, isWhereAnInitialPoseHasIt) {
   live->send(poses, near);
   ASSERT_TRUE(
       live->waitFor([&] { return contains(live->said(), "where an initial pose has it"); }));
+  const Isometry3d said = poseAt(2.3, 0.95, heading) * T_odometry_robot.inverse();
+  ASSERT_TRUE(live->waitFor([&] {  // at once, before the next scan
+    const auto* last = correctionIn(transforms);
+    return last && std::abs(last->transform.translation.x - said(0, 3)) < 1e-6 &&
+           std::abs(last->transform.translation.y - said(1, 3)) < 1e-6;
+  }));
   for (int i = 4; i <= 6; ++i) seeFrom(T_room_carried, i);
   ASSERT_TRUE(live->waitFor([&] {
     const auto* last = correctionIn(transforms);

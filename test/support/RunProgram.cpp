@@ -38,8 +38,16 @@ ProgramRun runProgram(const std::string& name, const Words& arguments) {
           folder.read("errors"), usage.ru_maxrss};
 }
 
+/** What `timeout` kills may die after `timeout` does: all that inherit a pipe are waited for. */
 ProgramRun runCommand(const std::string& command) {
-  return runProgram("/bin/sh", {"-c", command + " 2>&1"});
+  int ends[2];
+  if (pipe(ends) != 0) return {};
+  ProgramRun run = runProgram("/bin/sh", {"-c", command + " 2>&1"});
+  close(ends[1]);
+  char nothing;
+  while (read(ends[0], &nothing, 1) > 0) continue;
+  close(ends[0]);
+  return run;
 }
 
 ProgramRun succeeded(ProgramRun run) {
