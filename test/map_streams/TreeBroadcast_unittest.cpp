@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "StreamedMaps.h"
 #include "TemporaryFolder.h"
 
@@ -92,6 +94,21 @@ TEST(TreeBroadcast, theTreeMayBecomeAnother) {
   setAbstraction(other, someOptions(0.01));
   b.map = other;
   EXPECT_TRUE(b.isTold());
+}
+
+TEST(TreeBroadcast, tellsWhatTheTreeStatesOnceTheMapIsCalibrated) {
+  Broadcast b(someOptions(0.001));
+  for (const PosedCloud& scan : scansOfSmallPlace(3, 2000, K, 7)) b.insert(scan);
+  std::set<std::string> trees;
+  for (const double power : {1.0, 0.5, 0.8}) {
+    b.map.setCalibration({power, power < 1 ? 0.1 : 0});
+    EXPECT_TRUE(b.isTold()) << power;
+    trees.insert(b.tree());
+    TreeCopy late;
+    EXPECT_TRUE(late.accept(b.sender.all()));
+    EXPECT_TRUE(fileOf(late.map()) == b.tree()) << power;
+  }
+  EXPECT_EQ(trees.size(), 3u);
 }
 
 TEST(TreeBroadcast, aChangeTakesWhatChanged) {

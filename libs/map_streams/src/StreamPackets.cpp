@@ -231,6 +231,16 @@ PacketHeader PacketHeader::of(const std::string& payload) {
   return h;
 }
 
+namespace {
+
+double powerIn(Fields& fields) {
+  const auto power = fields.get<double>();
+  if (!(power > 0 && power <= 4)) throw std::runtime_error("altered: a power that cannot be");
+  return power;
+}
+
+}  // namespace
+
 std::string StreamDescription::compressed() const {
   std::string text;
   Fields fields(text);
@@ -267,8 +277,7 @@ StreamDescription StreamDescription::of(const std::string& compressed) {
   if (d.rootDepth > kTreeDepth) throw std::runtime_error("altered: trees below the voxels");
   d.coding = fields.getText();
   d.kind = fields.getText();
-  d.power = fields.get<double>();
-  if (!(d.power > 0 && d.power <= 4)) throw std::runtime_error("altered: a power that cannot be");
+  d.power = powerIn(fields);
   return d;
 }
 
@@ -360,6 +369,7 @@ std::string TreeMessage::bytes() const {
   fields.put(number);
   fields.put(static_cast<std::uint8_t>(isAll));
   fields.putText(description);
+  fields.put(power);
   fields.put(static_cast<std::uint32_t>(parts.size()));
   for (const std::string& group : parts) fields.putText(group);
   const std::uint32_t crc = crcOf(bytes, sizeof(crc));
@@ -381,6 +391,7 @@ TreeMessage TreeMessage::of(const std::string& bytes) {
   m.number = fields.get<std::uint32_t>();
   m.isAll = fields.get<std::uint8_t>() != 0;
   m.description = fields.getText();
+  m.power = powerIn(fields);
   for (auto groups = fields.get<std::uint32_t>(); groups > 0; --groups)
     m.parts.push_back(fields.getText());
   return m;

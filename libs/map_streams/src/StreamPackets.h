@@ -72,6 +72,7 @@ struct TreeMessage {
   std::uint32_t stream = 0, number = 0;  ///< the tree is then that of so many changes
   bool isAll = false;                    ///< what it tells is all that there is
   std::string description;               ///< from here on; empty: the one before
+  double power = 1;                      ///< of the tree's calibration
   std::vector<std::string> parts;        ///< as a PartCoder writes them
 
   std::string bytes() const;

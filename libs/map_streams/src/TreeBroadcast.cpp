@@ -23,16 +23,20 @@ struct TreeBroadcast::State {
   std::unique_ptr<PartCoder> coder;
   std::size_t learned = 0;  ///< from so many parts
   StreamTree told;
+  Calibration calibration;  ///< of the map when the power was fitted
+  double power = 1;
   bool isFirst = true;
 
   std::optional<ChangedCells> changes();
   bool isAnother(const Abstraction& abstraction) const;
+  bool fitPower(const Abstraction& abstraction);
   std::string description() const;
   std::vector<std::string> encoded(const TreeParts& parts) const;
 };
 
 TreeBroadcast::TreeBroadcast(SemanticOcTree& map, std::uint32_t stream)
-    : m_state(new State{map, stream, 0, map.follow(), LeafFollower(map), {}, {}, 0, {}, true}) {}
+    : m_state(
+          new State{map, stream, 0, map.follow(), LeafFollower(map), {}, {}, 0, {}, {}, 1, true}) {}
 TreeBroadcast::~TreeBroadcast() = default;
 TreeBroadcast::TreeBroadcast(TreeBroadcast&&) noexcept = default;
 
@@ -52,6 +56,15 @@ std::optional<ChangedCells> TreeBroadcast::State::changes() {
 bool TreeBroadcast::State::isAnother(const Abstraction& abstraction) const {
   return isFirst || coder->rootDepth() != abstraction.rootDepth() ||
          abstraction.emptyCompressedMap() != *kind;
+}
+
+/** Looks at all of the map, but only when its calibration is another. \return whether it is */
+bool TreeBroadcast::State::fitPower(const Abstraction& abstraction) {
+  const Calibration& now = map.filterParameters().calibration;
+  if (now.power == calibration.power && now.shared == calibration.shared) return false;
+  power = abstraction.compressedMap().filterParameters().calibration.power;
+  calibration = now;
+  return true;
 }
 
 std::string TreeBroadcast::State::description() const {
@@ -98,11 +111,13 @@ std::string TreeBroadcast::change() {
   }
   message.stream = s.stream;
   message.number = s.number + 1;
+  const bool isPowerNew = s.fitPower(abstraction);
+  message.power = s.power;
   message.parts = s.encoded(parts);
   for (std::size_t i = 0; i < parts.parts.size(); ++i)
     s.told.apply(parts.parts.part(i), message.number);
   s.isFirst = false;
-  if (!message.isAll && message.parts.empty()) return {};
+  if (!message.isAll && message.parts.empty() && !isPowerNew) return {};
   s.number = message.number;
   return message.bytes();
 }
@@ -110,8 +125,8 @@ std::string TreeBroadcast::change() {
 std::string TreeBroadcast::all() const {
   const State& s = *m_state;
   if (!s.coder) return {};
-  return TreeMessage{s.stream, s.number, true, s.description(),
-                     s.encoded(partsOf(s.told, s.coder->rootDepth()))}
+  return TreeMessage{s.stream,        s.number, true,
+                     s.description(), s.power,  s.encoded(partsOf(s.told, s.coder->rootDepth()))}
       .bytes();
 }
 
@@ -167,6 +182,7 @@ void TreeCopy::State::take(const TreeMessage& m) {
   }
   if (!coder || (m.isAll && m.description.empty()))
     throw std::runtime_error("altered: nothing says of which kind the tree is");
+  kind->setCalibration({m.power, 0});
   if (m.isAll) tree = StreamTree();
   for (const std::string& group : m.parts)
     for (const TreePart& part : coder->decode(group))

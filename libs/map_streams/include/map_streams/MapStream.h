@@ -145,7 +145,8 @@ class TreeBroadcast {
   std::unique_ptr<State> m_state;
 };
 
-/** A copy of the compressed tree that a TreeBroadcast tells of. */
+/** A copy of the compressed tree that a TreeBroadcast tells of. Its cells are the tree's to the
+ * last bit; its calibration is that of when the map's was another for the last time. */
 class TreeCopy {
  public:
   TreeCopy();
