@@ -124,7 +124,7 @@ void receivePackets(const std::string& bytes) {
     const bool isFirst = at == records.begin();
     try {
       copy.accept(semantic_octree::TreeMessage{kStream, header.revision + 1u, isFirst,
-                                               isFirst ? text : "", contents}
+                                               isFirst ? text : "", 1, contents}
                       .bytes());
       expectSound(copy.map());
     } catch (const std::exception&) {
