@@ -139,8 +139,8 @@ Summary convertCarmen(const std::filesystem::path& log, const Conversion& conver
 
 /** What to take of a bag. */
 struct BagChoice {
-  /** Of points: clouds, depth images, laser scans. None: the only one of the first kind that there
-   * is. */
+  /** Topics of points: clouds, depth images, laser scans. None: the only topic of the first kind
+   * that the bag has. */
   std::vector<std::string> topics;
   std::string labelField = "label";  ///< of clouds: raw ids of the class table; "rgb": its colors
   /** Topic of label images for depth images; empty: the only one with "label" in its name. */

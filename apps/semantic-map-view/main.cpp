@@ -191,11 +191,15 @@ struct Panels {
         why(viewer, compress),
         plan(viewer, cli.order, cli.vehicle),
         files(viewer, tracks, plan, cli.wantedTiles()) {
-    viewer.window().onClick([this](const map_view::Ray& ray) { why.show(ask.ask(ray)); });
-    viewer.window().onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
-    viewer.window().onMoved(
-        [this](const map_view::Ray& ray, bool letsGo) { plan.turn(ray, letsGo); });
     if (cli.compress) compress.switchOn(true);
+    cli.panels ? listen(viewer.window()) : viewer.window().hidePanels();
+  }
+
+ private:
+  void listen(ViewWindow& window) {
+    window.onClick([this](const map_view::Ray& ray) { why.show(ask.ask(ray)); });
+    window.onGrab([this](const map_view::Ray& ray) { return plan.place(ray); });
+    window.onMoved([this](const map_view::Ray& ray, bool letsGo) { plan.turn(ray, letsGo); });
   }
 };
 
@@ -211,13 +215,12 @@ int run(const Cli& cli) {
     if (const auto& note = viewer.layer(i).note(); !note.empty()) viewer.say(note);
   TrackScene tracks(viewer);
   for (Track& track : opened.tracks) tracks.add(std::move(track));
-  std::optional<Panels> panels;
-  if (cli.panels) panels.emplace(viewer, tracks, cli);
+  Panels panels(viewer, tracks, cli);
   window->setVisible(true);
   if (!cli.picture.empty() || !cli.animation.empty()) {
     const cv::Mat picture = restingPicture(*window);
     if (!cli.picture.empty()) map_pictures::savePicture(picture, cli.picture);
-    if (panels && !cli.animation.empty()) animate(*window, panels->compress, cli.animation);
+    if (!cli.animation.empty()) animate(*window, panels.compress, cli.animation);
     return 0;
   }
   window->run([] { return false; });

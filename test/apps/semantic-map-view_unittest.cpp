@@ -20,6 +20,15 @@ TEST_F(SemanticMapView, ShowsClassesInTheirColorsWhereTheyAre) {
   EXPECT_EQ(classAt(sure, pixelOf(-5, 2, 0.2)), 'g') << "green is sure";
 }
 
+TEST_F(SemanticMapView, ShowsTheCompressedTreeAlsoWithoutPanels) {
+  SKIP_WITHOUT_WINDOWS();
+  const Words arguments = {path("map.semantic"), "--no-panels", "--camera", kTop};
+  const cv::Mat full = draw(arguments), small = draw(joined(arguments, {"--compress"}));
+  EXPECT_GT(cv::norm(full, small, cv::NORM_L1), 1e5);
+  for (const int x : {20, kWidth - 20})
+    EXPECT_EQ(full.at<cv::Vec3b>(20, x), small.at<cv::Vec3b>(20, x)) << "a panel";
+}
+
 TEST_F(SemanticMapView, ShowsWhatIsInsideOfABox) {
   SKIP_WITHOUT_WINDOWS();
   const cv::Mat picture = draw(

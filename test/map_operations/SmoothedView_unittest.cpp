@@ -39,8 +39,8 @@ std::optional<SemanticOcTree::Belief> beliefAt(const SemanticOcTree& map, const 
   return map.belief(leaf);
 }
 
-/** Of neighbors that agree on a class and name a second one, how many name the same; 20 that do
- * come first. */
+/** The share of neighbors that name the same second class, among those that agree on the first;
+ * 20 such pairs count beforehand. */
 double shareRepeatedIn(const SemanticOcTree& map) {
   double pairs = 20, same = 20;
   for (const auto& [id, p] : voxelsOf(map))

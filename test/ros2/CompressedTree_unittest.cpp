@@ -18,7 +18,7 @@ using semantic_octree::SemanticOcTree;
 const std::string kRelevant = "road: 1, grass: 1, wall: 1";
 constexpr double kAlpha = 0.0002;
 
-/** Of all but the calibration, which is fitted anew only when that of the map changes. */
+/** A map but for its calibration, which is fitted anew only when that of the whole map changes. */
 std::string bytesOf(SemanticOcTree map) {
   map.setCalibration({});
   std::ostringstream out;

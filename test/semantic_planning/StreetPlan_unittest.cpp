@@ -117,8 +117,8 @@ TEST_F(StreetPlan, aCarStartsWhereTheRecordingCarStoodThoughItsLidarDidNotSeeThe
     EXPECT_NE(planner.check(planarPose(T_map_sensor)), PlanStatus::Found) << "it is known";
   for (const Eigen::Isometry3d& T_map_sensor : driven) {
     const TPose2D pose = planarPose(T_map_sensor);
-    const TPose2D goal = pose + TPose2D(10, 0, 0);
-    const PlanResult plan = planner.plan(pose, goal);
+    const TPose2D ahead = pose + TPose2D(10, 0, 0);
+    const PlanResult plan = planner.plan(pose, ahead);
     ASSERT_TRUE(plan.found()) << pose.asString() << plan.reason;
     EXPECT_LT(plan.length, 10.5);
   }

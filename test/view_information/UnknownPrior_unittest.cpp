@@ -162,7 +162,7 @@ struct Scene {
   UniformPrior prior{question, model};
 };
 
-/** Of each voxel of a template, the one through which it is seen: the last in the shell before. */
+/** Through which voxel of the shell before each voxel of a template is seen: the last one. */
 std::vector<int> parentsOf(const ViewTemplate& view) {
   std::vector<int> parents, lastOf(static_cast<std::size_t>(view.reach()) + 1, -1);
   for (const ViewTemplate::Voxel& v : view.voxels()) {

@@ -55,7 +55,7 @@ struct FramePose {
 // Messages as ROS 2 writes them (CDR, of either byte order). \throw std::runtime_error they end too
 // early, or are of another encoding.
 
-/** Of a message that begins with one. */
+/** The message begins with a header. */
 BagHeader headerOfMessage(std::string_view message);
 BagCloud cloudOfMessage(std::string_view message);
 BagImage imageOfMessage(std::string_view message);

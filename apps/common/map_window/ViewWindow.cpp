@@ -83,6 +83,10 @@ Panel* ViewWindow::addPanel(Side side, const std::string& title, int width, bool
   return panel;
 }
 
+void ViewWindow::hidePanels() {
+  for (const Placed& placed : m_panels) placed.panel->setVisible(false);
+}
+
 void ViewWindow::arrangePanels() {
   performLayout();
   for (const Side side : {Side::Left, Side::Right}) {

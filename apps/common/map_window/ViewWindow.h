@@ -37,6 +37,8 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
    * \param width of what is in it, pixels */
   enum class Side { Left, Right };
   Panel* addPanel(Side side, const std::string& title, int width, bool isOpen = true);
+  /** What panels do goes on without a hand. */
+  void hidePanels();
 
   /** A ring around a place (m, map frame), whatever hides it; none: no place. */
   void setRing(const std::optional<Eigen::Vector3d>& place) { m_ring = place; }

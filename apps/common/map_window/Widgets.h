@@ -77,7 +77,7 @@ nanogui::Widget* addRow(nanogui::Widget* parent, int spacing = 6);
 /** A widget whose children stand below each other. */
 nanogui::Widget* addColumn(nanogui::Widget* parent, int margin, int spacing);
 
-/** The same in a part of a panel that scrolls. */
+/** A part of a panel that scrolls, with its contents below each other. */
 nanogui::Widget* addScroll(nanogui::Widget* parent, int width, int height);
 
 /** A line of text of a fixed width. */

@@ -49,8 +49,8 @@ SemanticOcTreeNode labeledLeaf(const SemanticOcTree& map, const Eigen::Array3i& 
 constexpr double kPairsBefore = 20;
 constexpr std::size_t kMostLeaves = 1 << 18;
 
-/** Of voxels across a face that agree on the likeliest class and name a second one, the share of
- * those whose second class is the same. */
+/** Neighbors across a face often agree on the likeliest class, and name a second one. \return the
+ * share of such pairs whose second classes are the same */
 double shareRepeated(const SemanticOcTree& map) {
   double pairs = kPairsBefore, same = kPairsBefore;
   const std::size_t oneIn = 1 + map.getNumLeafNodes() / kMostLeaves;

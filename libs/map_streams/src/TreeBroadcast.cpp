@@ -191,7 +191,7 @@ void TreeCopy::State::take(const TreeMessage& m) {
   number = m.number;
 }
 
-/** Those that are too many would be followed by all of it anyway. */
+/** Where more wait than kMost, all of the tree will be asked for anyway. */
 void TreeCopy::State::wait(TreeMessage m) {
   constexpr std::size_t kMost = 100;
   waiting[m.number] = std::move(m);

@@ -64,7 +64,7 @@ class ChangedCells {
 
 /** \param before what the receiver has */
 TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before);
-/** The same without the order of the alphas: all parts are of one step.
+/** What leads to the compressed tree as partsOfChange() does, in one step for all alphas.
  * \param changed elsewhere the tree is what it was before; null: anywhere */
 TreeParts unorderedPartsOfChange(SemanticOcTree& map, const StreamTree& before,
                                  const ChangedCells* changed);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "CompressedTree.h"
@@ -27,12 +28,17 @@ SemanticOcTree emptyFor(const SemanticOcTree& map) {
   return {map.getResolution(), map.classes(), parameters};
 }
 
-/** p(class | occupied), K numbers. */
-std::vector<double> classesOf(const SemanticOcTree::Belief& belief, int numClasses) {
-  std::vector<double> p(static_cast<std::size_t>(numClasses) + 1);
-  belief.distribution(numClasses, p.data());
-  for (double& x : p) x /= 1 - p.front();
-  return {p.begin() + 1, p.end()};
+/** p(class | occupied) as a calibration states it: K numbers, the same bits everywhere. */
+std::vector<double> classesOf(const SemanticOcTree::Belief& belief, const Calibration& calibration,
+                              int numClasses) {
+  const float most = std::max(belief.logOdds[0], belief.rest);
+  const auto odds = [&](float h) { return exactExponential(calibration.power * (h - most)); };
+  std::vector<double> p(static_cast<std::size_t>(numClasses), odds(belief.rest));
+  for (int i = 0; i < belief.count; ++i) p[belief.ids[i] - 1] = odds(belief.logOdds[i]);
+  const double sum = std::accumulate(p.begin(), p.end(), 0.0);
+  for (double& x : p) x *= (1 - calibration.shared) / sum;
+  for (int i = 0; i < belief.count; ++i) p[belief.ids[i] - 1] += calibration.shared / belief.count;
+  return p;
 }
 
 /** About so many leaves are asked, and steps in which a power is told. */
@@ -48,17 +54,17 @@ void calibrate(const SemanticOcTree& map, SemanticOcTree& compressed) {
   const Calibration& own = map.filterParameters().calibration;
   if (own.isIdentity()) return;
   const int numClasses = map.numClasses();
-  const double ofCell = std::pow(std::min(1.0, own.power), 2);
+  const double shy = std::min(1.0, own.power);
   const std::size_t oneIn = 1 + map.getNumLeafNodes() / kAskedLeaves;
   std::size_t number = 0;
   CalibrationFit fit;
   for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
     if (!leaf->hasClassRecord() || !map.isNodeOccupied(*leaf) || number++ % oneIn != 0) continue;
     const Node cell = compressed.search(leaf.getKey());
-    std::vector<double> is = classesOf(map.statedBelief(*leaf), numClasses);
-    const std::vector<double> before = classesOf(compressed.belief(cell), numClasses);
+    std::vector<double> is = classesOf(map.belief(*leaf), own, numClasses);
+    const auto before = classesOf(compressed.belief(cell), {shy * shy, 0}, numClasses);
     double sum = 0;
-    for (std::size_t k = 0; k < is.size(); ++k) sum += is[k] *= std::pow(before[k], ofCell);
+    for (std::size_t k = 0; k < is.size(); ++k) sum += is[k] *= before[k];
     for (double& x : is) x /= sum;
     fit.add(compressed.belief(cell), is, 1);
   }

@@ -115,7 +115,7 @@ class RelevantViews : public ViewStrategy {
   std::set<Column> m_toLearn;  ///< first columns of tiles whose ground may not be connected yet
   std::optional<View> m_chosen;
   TPose2D m_from;  ///< where it was chosen
-  /** Of the last choices: the way, what it promised until then, and what the map told. */
+  /** What the last choices promised, what the map told then, and the way to there. */
   std::deque<Account> m_accounts{{0, 0, 0}};
   double m_left = 0;  ///< nats that are promised within reach
 };

@@ -62,8 +62,8 @@ struct LabeledScan {
 struct NamedCloud {
   semantic_types::LabeledCloud cloud;
   std::vector<std::string> classNames;
-  /** Of points without classes, one for each or none: if each color is that of a class of the
-   * user's table, or black, which is none, these are their classes. */
+  /** Colors of points without classes, one for each or none: they stand for classes if each is a
+   * color of the user's table, or black, which is no class. */
   std::vector<semantic_types::Color> colors;
 };
 

@@ -128,7 +128,7 @@ void forTilesWithin(const std::vector<ColumnBox>& boxes, const Margin& margin, F
   }
 }
 
-/** The same tiles, sorted. */
+/** The tiles that forTilesWithin() visits, sorted. */
 inline std::vector<Column> tilesWithin(const std::vector<ColumnBox>& boxes, const Margin& margin) {
   std::vector<Column> tiles;
   forTilesWithin(boxes, margin, [&](Column tile) { tiles.push_back(tile); });

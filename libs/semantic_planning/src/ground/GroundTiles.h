@@ -62,7 +62,7 @@ class GroundTiles {
   void forgetStages();
   /** Makes them again, before an update, where it needs them. */
   void recallStages(const std::vector<Column>& tiles);
-  /** Those of these tiles that are not there. */
+  /** \return which of these tiles are not in memory */
   std::vector<Column> forgotten(const std::vector<Column>& tiles) const;
   /** Where surfaces are, and which of them are drivable. \param refilled tiles that are filled
    * again in any case */
