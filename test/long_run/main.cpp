@@ -1,9 +1,12 @@
 // A robot drives from goal to goal through one village for hours of its time, with people and a map
-// that forgets. What it takes has to stay as it is: the program prints a table and fails where it
+// that forgets. Each tenth drive explores, and each scan's change of the compressed tree is told to
+// a copy. What all this takes has to stay as it is: the program prints a table and fails where it
 // does not.
-//   long-run HOURS CONFIG ORDER [NOISE]     e.g. long-run 24 config/drives/synthetic.ini
-//   config/orders/synthetic.yaml 0.1
+//   long-run HOURS CONFIG ORDER [NOISE [SCENE SEED]]     e.g. long-run 24
+//   config/drives/synthetic.ini config/orders/synthetic.yaml 0.1 campus 7
 #include <malloc.h>
+#include <map_folders/MapFolder.h>
+#include <map_streams/MapStream.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <synthetic_world/Objects.h>
@@ -25,6 +28,7 @@ using simulated_drive::DriveLoop;
 constexpr int kParts = 8;            // of the run, a row each
 constexpr double kMayGrow = 1.1;     // heap, from the middle of the run to its end
 constexpr double kGoalsWithin = 45;  // m around the world's middle
+constexpr int kExploresEach = 10;    // drives
 
 /** What the heap gave out and has not got back. */
 double heapMegabytes() {
@@ -73,6 +77,28 @@ simulated_drive::Events people(Goals& goals, double seconds) {
   return events;
 }
 
+/** Tells a copy what becomes of the compressed tree, as a robot tells other ones. */
+class Radio : public simulated_drive::DriveObserver {
+ public:
+  explicit Radio(SemanticOcTree& map) : m_broadcast(map, 1) {}
+
+  void onSensed(const DriveLoop& loop, const std::vector<simulated_drive::Observation>&) override {
+    loop.mapper();  // waits for the scan
+    const std::string change = m_broadcast.change();
+    m_bytes += change.size();
+    if (!change.empty()) m_copy.accept(change);
+  }
+  bool isTheTree(const SemanticOcTree& compressed) const {
+    return m_copy.isCurrent() && m_copy.map() == compressed;
+  }
+  double megabytes() const { return static_cast<double>(m_bytes) / 1e6; }
+
+ private:
+  semantic_octree::TreeBroadcast m_broadcast;
+  semantic_octree::TreeCopy m_copy;
+  std::size_t m_bytes = 0;
+};
+
 /** A row of the table. */
 struct Part {
   int drives = 0, arrived = 0, collisions = 0;
@@ -100,6 +126,15 @@ struct Part {
   }
 };
 
+/** So that the drive can be looked at. */
+void tellOfFailure(const DriveLoop& loop) {
+  const auto& record = loop.record();
+  if (record.arrived() || record.end == simulated_drive::DriveEnd::Explored) return;
+  std::printf("%.0f s: from %s to %s: %s, %s\n", loop.time(), loop.start().asString().c_str(),
+              loop.goal().asString().c_str(), simulated_drive::nameOf(record.end),
+              record.reason.c_str());
+}
+
 bool isAsMadeAnew(const SemanticOcTree& map) {
   SemanticOcTree copy = map, anew = map;
   const auto options = semantic_octree::Abstraction(copy).options();
@@ -108,27 +143,37 @@ bool isAsMadeAnew(const SemanticOcTree& map) {
   return anew == map;
 }
 
-int run(double hours, const char* configFile, const char* orderFile, double noise) {
+int run(double hours, const char* configFile, const char* orderFile, double noise,
+        const char* sceneName, std::uint64_t seed) {
   auto config = simulated_drive::loadDriveConfig(configFile);
   config.halfLives =
       std::filesystem::path(configFile).parent_path() / "../classes/synthetic_decay.yaml";
   config.pose.odometryNoise = noise;
   config.pose.turnNoise = 30 * noise;
   config.timeLimit = 300;
-  auto scene = synthetic_world::makeScene("village", 1);
+  auto scene = synthetic_world::makeScene(sceneName, seed);
   const auto order = semantic_planning::loadClassOrder(orderFile, synthetic_world::classTable());
   Goals goals(scene.world, simulated_drive::trueFootprint(config.planner.vehicle));
   const double seconds = hours * 3600;
   const TPose2D start = goals.next();
-  DriveLoop loop(config, scene.world, order, start, goals.next(), people(goals, seconds));
+  auto stored = std::make_unique<semantic_octree::StoredMap>(
+      SemanticOcTree(config.voxelSize, synthetic_world::classTable(), config.filter));
+  SemanticOcTree& map = stored->tree();
+  DriveLoop loop(config, scene.world, order, start, goals.next(), people(goals, seconds),
+                 std::move(stored));
+  Radio radio(map);
+  loop.addObserver(radio);
   std::printf(
       "  hours  drives  arrived  contacts   meters   heap MB     nodes  insert    95 %%  replan    "
       "95 %%\n");
   std::vector<double> heap;
-  for (int i = 1; i <= kParts; ++i) {
+  for (int i = 1, drives = 0; i <= kParts; ++i) {
     Part part;
     do {
+      if (++drives % kExploresEach == 0)
+        loop.explore(semantic_octree::Abstraction(map).options().weights);
       part.add(loop.run());
+      tellOfFailure(loop);
       loop.goOn(goals.next());
     } while (loop.time() < seconds * i / kParts);
     part.nodes = loop.mapper().map().size();
@@ -137,18 +182,23 @@ int run(double hours, const char* configFile, const char* orderFile, double nois
     part.print(loop.time() / 3600);
   }
   const bool isEqual = isAsMadeAnew(loop.mapper().map());
+  const bool isCopied = radio.isTheTree(loop.compressedMap());
   const double growth = heap.back() / heap[kParts / 2 - 1];
   std::cout << "The G-values are " << (isEqual ? "" : "NOT ") << "those of the map made anew.\n"
+            << "The copy, told of with " << radio.megabytes() << " MB, is "
+            << (isCopied ? "" : "NOT ") << "the compressed tree.\n"
             << "From the middle to the end the heap grew by " << 100 * (growth - 1) << " %.\n";
-  return isEqual && growth <= kMayGrow ? 0 : 1;
+  return isEqual && isCopied && growth <= kMayGrow ? 0 : 1;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    if (argc < 4) throw std::invalid_argument("usage: long-run HOURS CONFIG ORDER [NOISE]");
-    return run(std::atof(argv[1]), argv[2], argv[3], argc > 4 ? std::atof(argv[4]) : 0);
+    if (argc < 4)
+      throw std::invalid_argument("usage: long-run HOURS CONFIG ORDER [NOISE [SCENE SEED]]");
+    return run(std::atof(argv[1]), argv[2], argv[3], argc > 4 ? std::atof(argv[4]) : 0,
+               argc > 6 ? argv[5] : "village", argc > 6 ? std::atoll(argv[6]) : 1);
   } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';
     return 1;

@@ -12,7 +12,7 @@ namespace {
 GuideState doing(const Activity& activity) {
   GuideState state;
   state.activity = activity;
-  state.plannedAt = 10;
+  state.plannedAt = state.changedAt = 10;
   state.hasPlanned = true;
   return state;
 }
@@ -233,6 +233,25 @@ TEST(GuideTransitions, CountPathsThatWereLeftBeforeTheirEnd) {
   EXPECT_EQ(state.replans, 1);
   const Transition end = transition(state, ended(20), options);
   EXPECT_EQ(transition(end.state, answer(end.action, true)).state.replans, 1);
+}
+
+TEST(GuideTransitions, AVehicleThatDoesNotGetOnLooksFromWhereItStands) {
+  const GuideOptions options;
+  GuideState state = doing(ToGoal{});
+  int fromHere = 0;
+  for (double seconds = 10; seconds < 20; seconds += 0.1) {
+    Look look = driving(seconds, 0);
+    look.stoppedFor = seconds - 10;
+    Transition next = transition(state, look, options);
+    if (const auto* goal = std::get_if<SeekGoal>(&next.action)) {
+      fromHere += goal->from == From::Here;
+      Answer nothingBetter{next.action, seconds};  // from a place ahead
+      nothingBetter.found = true;
+      next = transition(next.state, nothingBetter);
+    }
+    state = next.state;
+  }
+  EXPECT_EQ(fromHere, 3);  // after 4 s, then each 2 s
 }
 
 TEST(GuideTransitions, AnEnclosedVehicleLooksForABlindRecoveryOnce) {

@@ -52,7 +52,7 @@ std::optional<double>* blockedSince(Activity& activity) {
 }
 
 bool isStuck(const GuideState& state, const Look& look, const GuideOptions& options) {
-  return look.stoppedFor >= kStuckAfter && look.seconds - state.plannedAt >= options.patience;
+  return look.stoppedFor >= kStuckAfter && look.seconds - state.changedAt >= options.patience;
 }
 
 /** For long. Notes since when. */
@@ -82,7 +82,7 @@ Transition choose(GuideState state, const Look& look) {
     state.comesToRest = true;
     return {state, ComeToRest{}};
   }
-  state.plannedAt = look.seconds;
+  state.plannedAt = state.changedAt = look.seconds;
   if (!look.mayPlan) {
     state.recoveredBlind = false;
     return {state, SeekRecovery{false}};

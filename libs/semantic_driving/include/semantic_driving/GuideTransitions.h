@@ -58,7 +58,9 @@ using Activity = std::variant<Idle, ToGoal, ToFrontier, Recovering, GoingBack, G
 
 struct GuideState {
   Activity activity;
-  double plannedAt = -std::numeric_limits<double>::infinity();  ///< a path was last looked for
+  static constexpr double kNever = -std::numeric_limits<double>::infinity();
+  double plannedAt = kNever;                ///< a path was last looked for
+  double changedAt = kNever;                ///< the same, and not one from a place ahead
   bool hasPlanned = false;                  ///< a path to the goal or a frontier was driven
   int timesBack = 0;                        ///< since then, back on its track
   static constexpr int kMostTimesBack = 3;  ///< then there is no path
