@@ -65,7 +65,8 @@ class Goals {
   synthetic_world::Random m_random;
 };
 
-/** Somebody walks from one way to another each half minute, and is gone when he is there. */
+/** Somebody walks from one way to another each half minute, and is gone when he is there. Now and
+ * then he appears where the robot is: contacts are no faults of this program's. */
 simulated_drive::Events people(Goals& goals, double seconds) {
   simulated_drive::Events events;
   for (double begin = 0; begin < seconds; begin += 30) {
@@ -127,9 +128,8 @@ struct Part {
 };
 
 /** So that the drive can be looked at. */
-void tellOfFailure(const DriveLoop& loop) {
+void tellHowItEnded(const DriveLoop& loop) {
   const auto& record = loop.record();
-  if (record.arrived() || record.end == simulated_drive::DriveEnd::Explored) return;
   std::printf("%.0f s: from %s to %s: %s, %s\n", loop.time(), loop.start().asString().c_str(),
               loop.goal().asString().c_str(), simulated_drive::nameOf(record.end),
               record.reason.c_str());
@@ -170,10 +170,10 @@ int run(double hours, const char* configFile, const char* orderFile, double nois
   for (int i = 1, drives = 0; i <= kParts; ++i) {
     Part part;
     do {
-      if (++drives % kExploresEach == 0)
-        loop.explore(semantic_octree::Abstraction(map).options().weights);
+      const bool explores = ++drives % kExploresEach == 0;
+      if (explores) loop.explore(semantic_octree::Abstraction(map).options().weights);
       part.add(loop.run());
-      tellOfFailure(loop);
+      if (!explores && !loop.record().arrived()) tellHowItEnded(loop);
       loop.goOn(goals.next());
     } while (loop.time() < seconds * i / kParts);
     part.nodes = loop.mapper().map().size();
