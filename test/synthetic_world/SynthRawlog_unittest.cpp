@@ -71,29 +71,6 @@ TEST(SynthRawlog, unprojectedDepthsLandOnSurfacesOfTheirLabels) {
   }
 }
 
-TEST(SynthRawlog, lidarPointsLandOnSurfacesOfTheirClasses) {
-  const Folder folder;
-  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park --hills 2 --range-noise 0" + kSmall).status,
-            0);
-  const auto scene = makeScene("park", 1, 2);
-  const auto all = observationsOf(folder / "x.rawlog");
-  const auto poses = only<CObservationRobotPose>(all);
-  const auto clouds = only<CObservationLabeledCloud>(all);
-  for (int k = 0; k < 3; ++k) {
-    const CPose3D T_map_sensor = poses[k]->pose.mean + clouds[k]->sensorPose;
-    ASSERT_GT(clouds[k]->cloud.size(), 200u);
-    int wrong = 0;
-    for (std::size_t i = 0; i < clouds[k]->cloud.size(); ++i) {
-      const auto& q = clouds[k]->cloud.points[i];
-      const auto p = T_map_sensor.composePoint(mrpt::math::TPoint3D(q.x(), q.y(), q.z()));
-      const PointTruth truth = scene.world.at({p.x, p.y, p.z}, 1e-3);
-      EXPECT_EQ(truth.state, PointTruth::State::Surface);
-      wrong += truth.id != clouds[k]->cloud.classes[i];
-    }
-    EXPECT_LE(wrong, 3);
-  }
-}
-
 TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   const Folder folder;
   const std::string noise = kSmall + " --label-noise 0.1 --dropout 0.1 ";
@@ -105,19 +82,6 @@ TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   }
   ASSERT_EQ(run(folder, "-f -o b.rawlog" + noise + "--odometry --seed 10").status, 0);
   EXPECT_NE(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
-}
-
-TEST(SynthRawlog, trueTrajectoryStandsBesideTheRawlog) {
-  const Folder folder;
-  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park" + kSmall).status, 0);
-  const auto poses = only<CObservationRobotPose>(observationsOf(folder / "x.rawlog"));
-  const auto trajectory = labeled_cloud::loadTumTrajectory(folder / "x.tum");
-  EXPECT_EQ(trajectory.size(), poses.size());
-  for (const auto& pose : poses) {
-    const auto T = trajectory.at(pose->timestamp);
-    ASSERT_TRUE(T);
-    EXPECT_LT((T->asVectorVal() - pose->pose.mean.asVectorVal()).array().abs().maxCoeff(), 1e-6);
-  }
 }
 
 TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
@@ -135,17 +99,6 @@ TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
   EXPECT_LT((exact.asVectorVal() - way.asVectorVal()).array().abs().maxCoeff(), 1e-9);
   EXPECT_GT(noisy.distanceTo(way), 0.01);
   EXPECT_LT(noisy.distanceTo(way), 3);
-}
-
-TEST(SynthRawlog, truthFileNamesTheWorldAndItsClasses) {
-  const Folder folder;
-  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park --seed 12 --hills 0.5" + kSmall).status, 0);
-  const auto truth = mrpt::containers::yaml::FromFile((folder / "x.truth.yaml").string());
-  EXPECT_EQ(truth["scene"].as<std::string>(), "park");
-  EXPECT_EQ(truth["seed"].as<int>(), 12);
-  EXPECT_EQ(truth["hills"].as<double>(), 0.5);
-  EXPECT_EQ(truth["frames"].as<int>(), 3);
-  EXPECT_EQ(truth["classes"].asSequence().size(), 22u);
 }
 
 TEST(SynthRawlog, writesTheSameWorldInRugdsClasses) {
