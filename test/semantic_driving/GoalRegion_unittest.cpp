@@ -144,3 +144,11 @@ TEST(GoalRegion, IsThatOfAFloodByHandAmongRandomWalls) {
   EXPECT_GT(open, 0);
   EXPECT_LT(enclosed, 20);
 }
+
+TEST(GoalRegion, ThatTheVehicleReachesIsNotEnclosed) {
+  PaintedWorld world;
+  const SemanticPlanner planner = Walls().planner(world);
+  const GoalRegion region = regionOf(planner, {{11, 0}}, {11, 0});
+  EXPECT_FALSE(region.isEnclosed());
+  EXPECT_TRUE(region.contains(columnOf({-9, -9})));  // wherever: a plan may come from there
+}
