@@ -63,7 +63,6 @@ class Surroundings {
   }
   /** Key of the ground's height there, or that leads there. \param c contained */
   int height(semantic_planning::Column c) const { return m_heights[m_columns.indexOf(c)]; }
-  const ColumnRectangle& columns() const { return m_columns; }
 
   /** f(column, key of the ground's height, surface there or null) */
   template <class F>
