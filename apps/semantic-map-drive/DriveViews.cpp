@@ -73,9 +73,8 @@ std::string caption(const DriveLoop& loop) {
                       nameOf(loop.guide().target()));
 }
 
-DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int longerEdge,
-                           bool compressed)
-    : m_region(around(start, 12)), m_longerEdge(longerEdge), m_compressed(compressed) {
+DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int longerEdge)
+    : m_region(around(start, 12)), m_longerEdge(longerEdge) {
   m_region.extend(around(goal, 12));
 }
 
@@ -97,10 +96,7 @@ MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
   MapCanvas canvas = paperFor(loop.mapper().map().getResolution());
   map_pictures::PictureStyle style;
   style.maxAboveGround = kCutAbove;
-  if (m_compressed)
-    canvas.drawMapAround(loop.compressedMap(), style);
-  else
-    canvas.drawMapAround(loop.mapper().map(), style);
+  canvas.drawMapAround(loop.mapper().map(), style);
   drawTrack(canvas, loop.record(), "driven", kTrack);
   drawRoute(canvas, loop.controller().tracker());
   drawEnd(canvas, "start", loop.start(), kStart);
@@ -123,7 +119,6 @@ cv::Mat DrivePicture::frame(const DriveLoop& loop) const {
                                                         {"goal", kGoal},
                                                         {"robot", kRobotColor}})
     legend.push_back(entry);
-  if (m_compressed) legend.push_back(map_pictures::coarseCellEntry());
   cv::Mat picture;
   cv::copyMakeBorder(canvas.picture(), picture, 0, kBelow, 0, 0, cv::BORDER_CONSTANT,
                      map_pictures::bgr(map_pictures::kPaper));

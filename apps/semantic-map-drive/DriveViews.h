@@ -23,11 +23,8 @@ std::string caption(const DriveLoop& loop);
  * the path, the driven track, and the robot. One picture is like the other in place and size. */
 class DrivePicture {
  public:
-  /** \param longerEdge of the map's part, at least so many pixels \param compressed shows the
-   * compressed tree
-   */
-  DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int longerEdge,
-               bool compressed);
+  /** \param longerEdge of the map's part, at least so many pixels */
+  DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int longerEdge);
   /** Makes room for a drive's track, too: another place from here on. */
   void include(const DriveRecord& record);
 
@@ -42,13 +39,10 @@ class DrivePicture {
 
   Eigen::AlignedBox2d m_region;  ///< m
   int m_longerEdge;
-  bool m_compressed;
 };
 
 /** Adds the track of another drive. */
 void addOtherTrack(map_pictures::MapCanvas& canvas, const DriveRecord& record);
-
-using namespace simulated_drive;
 
 /** Shows a drive in the viewer's window while it goes on: the map, goal, path, driven track and
  * robot. The drive waits for the clock on the wall, until the window is closed. */

@@ -50,7 +50,7 @@ struct Cli {
   double hills = 1, pictureEvery = 0;
   double memory = semantic_octree::MapFolderOptions().memory;
   mrpt::math::TPose2D start, goal;
-  bool rawlog = true, pictures = true, navlog = false, live = false, compressed = false;
+  bool rawlog = true, pictures = true, navlog = false, live = false;
   bool explore = false;
   Events events;
   Outputs outputs;
@@ -117,7 +117,6 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
   app.add_flag("--live", live,
                "Show the drive in a window, no faster than real time, until the window is closed");
-  app.add_flag("--compressed-pictures", compressed, "Show the compressed tree in pictures");
   app.add_flag("!--no-pictures", pictures, "Write no animation");
 }
 
@@ -200,8 +199,8 @@ class DriveProgram {
         m_weights(weightsOf(cli)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(cli.start, goalOf(cli), 960, cli.compressed),
-        m_whole(cli.start, goalOf(cli), 1200, cli.compressed) {
+        m_picture(cli.start, goalOf(cli), 960),
+        m_whole(cli.start, goalOf(cli), 1200) {
     m_config.sensors.seed = cli.seed;
   }
 

@@ -29,33 +29,114 @@ struct ReceptionOptions {
   unsigned seed = 2;
 };
 
+/** The silence before a request or a receipt goes out again. */
+constexpr milliseconds kPatience(200);
+constexpr std::size_t kPacketsPerReceipt = 16;
+/** So often the sender is told that all is there, unless it says so, too. */
+constexpr int kFarewells = 10;
+
 /** Receives one map. */
 class Reception {
  public:
   /** \throw std::runtime_error the wish is too long. */
   Reception(const radio::Peer& sender, const radio::Wish& wish, const radio::Seal& seal,
-            const ReceptionOptions& options);
+            const ReceptionOptions& options)
+      : m_sender(sender),
+        m_seal(seal),
+        m_options(options),
+        m_stream(std::random_device()()),
+        m_cookie(radio::Cookies::kBytes, '\0'),
+        m_wish(wish.packed()),
+        m_socket(0),
+        m_radio(m_socket, options.loss, options.seed),
+        m_receiver(m_stream),
+        m_lastHeard(Clock::now()),
+        m_lastSent(m_lastHeard - std::chrono::hours(1)) {}
 
   /** Until it is there, or enough of it, or the user stops it.
    * \param check is called with the empty map once it is known which classes it has
    * \throw std::runtime_error the sender is not there, refuses, or falls silent; what came is in
    * receiver() nevertheless. */
   template <typename Check>
-  void receive(const StopRequest& stop, const Check& check);
+  void receive(const StopRequest& stop, const Check& check) {
+    bool isChecked = false;
+    while (!stop.pending() && !m_isEnded && !isEnough()) {
+      ask();
+      listen(std::chrono::milliseconds(50));
+      if (!isChecked && m_receiver.hasMap()) {
+        check(m_receiver.map());
+        isChecked = true;
+      }
+      if (Clock::now() - m_lastHeard > std::chrono::duration<double>(m_options.timeout))
+        failSilent();
+    }
+  }
   /** Tells the sender that this is all; it may say so too. */
-  void end();
+  void end() {
+    for (int i = 0; i < kFarewells && !m_isEnded; ++i) {
+      send(m_receiver.isFinished() ? m_receiver.receipt()
+                                   : Datagram{Datagram::Type::End, m_stream, ""});
+      for (const auto until = Clock::now() + kPatience; Clock::now() < until && !m_isEnded;)
+        listen(milliseconds(20));
+    }
+  }
   const semantic_octree::MapReceiver& receiver() const { return m_receiver; }
 
  private:
   using Clock = std::chrono::steady_clock;
   using Datagram = semantic_octree::Datagram;
-  bool isEnough() const;
+  bool isEnough() const {
+    return m_receiver.isFinished() ||
+           (m_options.bytes > 0 && m_receiver.prefix().bytes >= m_options.bytes);
+  }
   /** Waits for a datagram and takes it. \return whether one came */
-  bool listen(std::chrono::milliseconds timeout);
-  void take(const Datagram& datagram);
-  void ask();
+  bool listen(milliseconds timeout) {
+    radio::Peer from;
+    const auto bytes = m_socket.receive(from, timeout);
+    if (!bytes || !(from == m_sender)) return false;
+    std::optional<Datagram> datagram;
+    try {
+      datagram = Datagram::of(m_seal.opened(*bytes));
+      if (datagram->stream != m_stream) return false;
+    } catch (const std::runtime_error& e) {
+      details() << from.text() << ": " << e.what() << std::endl;
+      return false;
+    }
+    m_lastHeard = Clock::now();
+    take(*datagram);
+    return true;
+  }
+  void take(const Datagram& datagram) {
+    if (datagram.type == Datagram::Type::Refusal)
+      throw std::runtime_error("the sender " + m_sender.text() + " refuses: " + datagram.payload);
+    if (datagram.type == Datagram::Type::End) m_isEnded = true;
+    if (datagram.type == Datagram::Type::Cookie && datagram.payload != m_cookie) {
+      m_cookie = datagram.payload;
+      m_lastSent = {};  // asks at once
+    }
+    if (datagram.type != Datagram::Type::Data) return;
+    const bool wasComplete = m_receiver.isComplete();
+    m_receiver.accept(datagram);
+    ++m_numUnacknowledged;
+    if (m_receiver.isComplete() && !wasComplete) send(m_receiver.receipt());
+  }
+  void ask() {
+    const bool isDue = Clock::now() - m_lastSent > kPatience;
+    const bool isAnswered = m_receiver.numExpected() > 0;
+    if (!isDue && !(isAnswered && m_numUnacknowledged >= kPacketsPerReceipt)) return;
+    send(isAnswered ? m_receiver.receipt()
+                    : Datagram{Datagram::Type::Request, m_stream, m_cookie + m_wish});
+    m_numUnacknowledged = 0;
+    m_lastSent = Clock::now();
+  }
   void send(const Datagram& datagram) { m_radio.send(m_sender, m_seal.sealed(datagram.bytes())); }
-  [[noreturn]] void failSilent() const;
+  [[noreturn]] void failSilent() const {
+    if (m_receiver.numExpected() == 0)
+      throw std::runtime_error("nobody answers at " + m_sender.text());
+    throw std::runtime_error("the sender " + m_sender.text() + " fell silent after " +
+                             std::to_string(m_receiver.numPackets()) + " of " +
+                             std::to_string(m_receiver.numExpected()) + " packets");
+  }
 
   radio::Peer m_sender;
   radio::Seal m_seal;
@@ -69,104 +150,6 @@ class Reception {
   std::size_t m_numUnacknowledged = 0;
   Clock::time_point m_lastHeard, m_lastSent;
 };
-
-template <typename Check>
-void Reception::receive(const StopRequest& stop, const Check& check) {
-  bool isChecked = false;
-  while (!stop.pending() && !m_isEnded && !isEnough()) {
-    ask();
-    listen(std::chrono::milliseconds(50));
-    if (!isChecked && m_receiver.hasMap()) {
-      check(m_receiver.map());
-      isChecked = true;
-    }
-    if (Clock::now() - m_lastHeard > std::chrono::duration<double>(m_options.timeout)) failSilent();
-  }
-}
-
-/** The silence before a request or a receipt goes out again. */
-constexpr milliseconds kPatience(200);
-constexpr std::size_t kPacketsPerReceipt = 16;
-/** So often the sender is told that all is there, unless it says so, too. */
-constexpr int kFarewells = 10;
-
-Reception::Reception(const radio::Peer& sender, const radio::Wish& wish, const radio::Seal& seal,
-                     const ReceptionOptions& options)
-    : m_sender(sender),
-      m_seal(seal),
-      m_options(options),
-      m_stream(std::random_device()()),
-      m_cookie(radio::Cookies::kBytes, '\0'),
-      m_wish(wish.packed()),
-      m_socket(0),
-      m_radio(m_socket, options.loss, options.seed),
-      m_receiver(m_stream),
-      m_lastHeard(Clock::now()),
-      m_lastSent(m_lastHeard - std::chrono::hours(1)) {}
-
-bool Reception::isEnough() const {
-  return m_receiver.isFinished() ||
-         (m_options.bytes > 0 && m_receiver.prefix().bytes >= m_options.bytes);
-}
-
-void Reception::ask() {
-  const bool isDue = Clock::now() - m_lastSent > kPatience;
-  const bool isAnswered = m_receiver.numExpected() > 0;
-  if (!isDue && !(isAnswered && m_numUnacknowledged >= kPacketsPerReceipt)) return;
-  send(isAnswered ? m_receiver.receipt()
-                  : Datagram{Datagram::Type::Request, m_stream, m_cookie + m_wish});
-  m_numUnacknowledged = 0;
-  m_lastSent = Clock::now();
-}
-
-bool Reception::listen(milliseconds timeout) {
-  radio::Peer from;
-  const auto bytes = m_socket.receive(from, timeout);
-  if (!bytes || !(from == m_sender)) return false;
-  std::optional<Datagram> datagram;
-  try {
-    datagram = Datagram::of(m_seal.opened(*bytes));
-    if (datagram->stream != m_stream) return false;
-  } catch (const std::runtime_error& e) {
-    details() << from.text() << ": " << e.what() << std::endl;
-    return false;
-  }
-  m_lastHeard = Clock::now();
-  take(*datagram);
-  return true;
-}
-
-void Reception::take(const Datagram& datagram) {
-  if (datagram.type == Datagram::Type::Refusal)
-    throw std::runtime_error("the sender " + m_sender.text() + " refuses: " + datagram.payload);
-  if (datagram.type == Datagram::Type::End) m_isEnded = true;
-  if (datagram.type == Datagram::Type::Cookie && datagram.payload != m_cookie) {
-    m_cookie = datagram.payload;
-    m_lastSent = {};  // asks at once
-  }
-  if (datagram.type != Datagram::Type::Data) return;
-  const bool wasComplete = m_receiver.isComplete();
-  m_receiver.accept(datagram);
-  ++m_numUnacknowledged;
-  if (m_receiver.isComplete() && !wasComplete) send(m_receiver.receipt());
-}
-
-void Reception::end() {
-  for (int i = 0; i < kFarewells && !m_isEnded; ++i) {
-    send(m_receiver.isFinished() ? m_receiver.receipt()
-                                 : Datagram{Datagram::Type::End, m_stream, ""});
-    for (const auto until = Clock::now() + kPatience; Clock::now() < until && !m_isEnded;)
-      listen(milliseconds(20));
-  }
-}
-
-void Reception::failSilent() const {
-  if (m_receiver.numExpected() == 0)
-    throw std::runtime_error("nobody answers at " + m_sender.text());
-  throw std::runtime_error("the sender " + m_sender.text() + " fell silent after " +
-                           std::to_string(m_receiver.numPackets()) + " of " +
-                           std::to_string(m_receiver.numExpected()) + " packets");
-}
 
 struct Cli {
   std::string sender;

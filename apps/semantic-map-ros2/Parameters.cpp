@@ -104,7 +104,6 @@ void readDrive(const Source& source, semantic_navigation::NavigatorOptions& navi
   OptionList list;
   navigation.drive.describe(list);
   list.add("reactive", reactive, "", "file of MRPT's reactive navigator (.ini)");
-  list.add("compressed_obstacles", navigation.compressedObstacles, "", "leaves are obstacles");
   list.add("mapping_latency", navigation.mappingLatency, "s", strict_files::atLeast(0),
            "from a scan until the map has it");
   IniSection section(source, "drive");

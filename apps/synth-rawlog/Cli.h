@@ -11,7 +11,7 @@ namespace synth_rawlog {
 
 /** The command line. */
 struct Cli {
-  std::filesystem::path output;  // the rawlog; empty if only the truth is asked
+  std::filesystem::path output;  // the rawlog; empty if only a picture is wanted
   std::string scene = "village";
   std::uint64_t seed = 1;
   double hills = 1;  // factor
@@ -29,12 +29,11 @@ struct Cli {
   double cameraPitch = 8;  // degrees down
   synthetic_world::LidarOptions lidar;
   synthetic_world::SensorNoise noise{0.01, 0, 0};
-  double labelNoise = 0;  // share of labels
+  double labelNoise = 0;  // share of labels, of other kinds than points
   label_noise::LabelNoise::Kind labelNoiseKind = label_noise::LabelNoise::Kind::Points;
 
   std::filesystem::path classes;  // table whose raw ids are the world's classes; empty: the world's
-  std::filesystem::path truthQuery, picture;
-  double tolerance = 0.05;  // m
+  std::filesystem::path picture;
 
   Outputs outputs;
 
@@ -46,8 +45,7 @@ struct Cli {
 /** Declares all options; parsing fills `cli`. */
 void addOptions(CLI::App& app, Cli& cli);
 
-/** Brings the parsed values into the sensors' options and checks what CLI11 cannot.
- * \throw std::invalid_argument naming the value. */
+/** Brings the parsed noise to the sensors. \throw CLI::RequiredError nothing is to be written. */
 void complete(Cli& cli);
 
 }  // namespace synth_rawlog

@@ -1,23 +1,112 @@
 // Drives a robot through a synthetic world and writes what its labeled sensors see.
 #include <map_pictures/MapPictures.h>
+#include <mrpt/poses/CPose3D.h>
+#include <semantic_types/ClassTable.h>
+#include <strict_files/OutputFiles.h>
+#include <strict_files/StrictYaml.h>
+#include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
 #include <synthetic_world/Scene.h>
 #include <synthetic_world/Sensors.h>
+#include <synthetic_world/Solids.h>
 
 #include <cmath>
-#include <iostream>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
 
 #include "Application.h"
 #include "Cli.h"
 #include "Signals.h"
 #include "StandardOutput.h"
-#include "TruthFiles.h"
 #include "synthetic_rawlog/Observations.h"
 
 namespace synth_rawlog {
 
+using synthetic_world::ClassId;
 using namespace synthetic_rawlog;
 namespace {
+
+/** The classes that things of the world have in the rawlog. */
+class WorldClasses {
+ public:
+  /** \param file class table (YAML) whose raw ids are the world's classes; empty: the world's own
+   * \throw std::runtime_error naming the file: it cannot be read, does not know a class of the
+   * world, or has more classes than a camera's labels. */
+  explicit WorldClasses(const std::filesystem::path& file)
+      : m_table(file.empty() ? synthetic_world::classTable()
+                             : semantic_types::loadClassTable(file)),
+        m_ids{synthetic_world::kNoClass} {
+    if (m_table.size() > kMostPixelClasses)
+      throw std::runtime_error(file.string() + ": " + std::to_string(m_table.size()) +
+                               " classes, and a pixel's labels hold 31");
+    for (int id = 1; id <= synthetic_world::kClassCount; ++id) try {
+        m_ids.push_back(m_table.fromRaw(static_cast<std::uint32_t>(id)));
+      } catch (const std::invalid_argument& e) {
+        throw std::runtime_error(file.string() + ": " + e.what());
+      }
+  }
+
+  const synthetic_world::ClassTable& table() const { return m_table; }
+  ClassId of(ClassId inWorld) const { return m_ids[inWorld]; }
+  synthetic_world::CameraFrame of(synthetic_world::CameraFrame frame) const {
+    for (ClassId& id : frame.labels.pixels) id = of(id);
+    return frame;
+  }
+  synthetic_world::LabeledCloud of(synthetic_world::LabeledCloud cloud) const {
+    for (ClassId& id : cloud.classes) id = of(id);
+    return cloud;
+  }
+
+ private:
+  synthetic_world::ClassTable m_table;
+  std::vector<ClassId> m_ids;  ///< by the world's
+};
+
+/** The robot's true poses in the format of the TUM data sets: time x y z qx qy qz qw. */
+class TrajectoryWriter {
+ public:
+  explicit TrajectoryWriter(const std::filesystem::path& target)
+      : m_file(target), m_stream(m_file.path()) {
+    m_stream << "# time x y z qx qy qz qw (true poses of the robot)\n" << std::fixed;
+  }
+  void write(double time, const mrpt::poses::CPose3D& T) {
+    mrpt::math::CQuaternionDouble q;
+    T.getAsQuaternion(q);
+    m_stream << std::setprecision(6) << time << std::setprecision(9);
+    for (const double v : {T.x(), T.y(), T.z(), q.x(), q.y(), q.z(), q.r()}) m_stream << ' ' << v;
+    m_stream << '\n';
+  }
+  void commit() {
+    if (!m_stream.flush()) throw std::runtime_error(m_file.path().string() + ": cannot be written");
+    m_stream.close();
+    m_file.commit();
+  }
+
+ private:
+  strict_files::StagedFile m_file;
+  std::ofstream m_stream;
+};
+
+/** Writes which world the rawlog shows: scene, seed, hills and classes, in YAML. */
+void writeTruth(const Cli& cli, const WorldClasses& classes, int frames,
+                const std::filesystem::path& file) {
+  std::ostringstream out;
+  out << "# The world that " << strict_files::printable(cli.output.filename().string())
+      << " shows.\n"
+      << "scene: " << cli.scene << "\nseed: " << cli.seed << "\nhills: " << cli.hills
+      << "\nframes: " << frames << "\nlabel_noise: " << cli.noise.label << "\nclasses:\n";
+  const synthetic_world::ClassTable& table = classes.table();
+  for (ClassId id = 1; id <= table.size(); ++id) {
+    const auto c = table.color(id);
+    out << "  - {id: " << +id << ", name: " << strict_files::yamlText(table.name(id))
+        << ", color: [" << +c.r << ", " << +c.g << ", " << +c.b << "]}\n";
+  }
+  strict_files::writeText(file, out.str());
+}
 
 constexpr double kStartTime = 1704067200;  // 2024-01-01, UTC
 
@@ -149,14 +238,11 @@ int run(const Cli& cli) {
   synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
   if (!cli.output.empty()) writeRawlog(cli, classes, scene);
   if (!cli.picture.empty()) writePicture(cli, classes, scene.world);
-  if (!cli.truthQuery.empty()) {
-    answerTruth(scene.world, classes, cli.tolerance, strict_files::readLines(cli.truthQuery),
-                std::cout);
-  }
   return 0;
 }
 
 }  // namespace
+
 }  // namespace synth_rawlog
 
 int main(int argc, char** argv) {

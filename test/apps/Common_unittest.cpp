@@ -41,13 +41,6 @@ TEST(Stopwatch, ofAThreadDoesNotCountOthers) {
   EXPECT_LT(thread.milliseconds(), 40);
 }
 
-TEST(Stopwatch, beginsAnewWithEachLap) {
-  Stopwatch watch;
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  EXPECT_GE(watch.lap(), 200);
-  EXPECT_LT(watch.milliseconds(), 200);
-}
-
 TEST(JsonFile, replacesWhatIsNoUtf8InsteadOfFailing) {
   const TemporaryFolder folder;
   writeJson(folder / "names.json", nlohmann::ordered_json{{"name",

@@ -264,10 +264,3 @@ TEST_F(NoisyLabels, blobsAreWrongAsAWholeAndPersistentOnesInAllScans) {
       EXPECT_NEAR(both / 4000.0, share * share, 0.03);
   }
 }
-
-TEST_F(NoisyLabels, badSharesAreNamed) {
-  writeSmallKitti(folder);
-  EXPECT_TRUE(
-      contains(failureOf(kittiArguments(folder) + " --label-noise 1.5 -o " + quoted(folder / "x")),
-               "--label-noise 1.5"));
-}

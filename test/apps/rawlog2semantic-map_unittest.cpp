@@ -118,14 +118,6 @@ TEST_F(Rawlog2SemanticMap, ofMrptsOwnSamplesWithoutPosesOrLabelsIsAMapOfOccupanc
   }
 }
 
-TEST_F(Rawlog2SemanticMap, severalRawlogsMakeOneMap) {
-  writeSmallRawlog(folder / "more.rawlog", robotPose(11, 5.1), smallScan(11));
-  ASSERT_EQ(run("more.rawlog", {path("small.rawlog")}).status, 0);
-  EXPECT_EQ(map().query(2.2, 0.2, 0.2).likeliestClass, 1);
-  EXPECT_EQ(map().query(6.2, 0.2, 0.2).likeliestClass, 1);
-  EXPECT_EQ(summary()["rawlogs"].size(), 2u);
-}
-
 TEST_F(Rawlog2SemanticMap, whatLiesOutsideTheTrajectoryIsSkippedAndCounted) {
   writeSmallRawlog(folder / "late.rawlog", robotPose(10, 1.1), smallScan(10), smallScan(20));
   const ProgramRun result = succeeded(run("late.rawlog"));

@@ -159,25 +159,6 @@ TEST_F(SemanticMapCompress, aWantedNumberOfBytesIsKeptAndTheNextLargerTreeExceed
   }
 }
 
-TEST_F(SemanticMapCompress, curveLeadsFromTheBlocksToAlphaZeroThroughTheChosenTree) {
-  const json report = reportOf(kTwoSolutions);
-  for (const json& solution : report["solutions"]) {
-    const json& curve = solution["curve"];
-    ASSERT_GT(curve.size(), 10u);
-    for (std::size_t i = 1; i < curve.size(); ++i) {
-      EXPECT_GT(curve[i]["knownLeaves"], curve[i - 1]["knownLeaves"]);
-      EXPECT_LT(curve[i]["alpha"], curve[i - 1]["alpha"]);
-      if (solution["name"] == "posts") continue;  // penalties may take information away
-      EXPECT_GT(curve[i]["relevantShare"], curve[i - 1]["relevantShare"]);
-    }
-    for (const json& point : curve) {
-      const json &leaves = point["knownLeaves"], &chosen = solution["tree"]["knownLeaves"];
-      EXPECT_TRUE(point["alpha"] > solution["alpha"] ? leaves <= chosen : leaves >= chosen);
-    }
-    EXPECT_EQ(curve[0]["irrelevantShare"].is_null(), solution["name"] != "posts");
-  }
-}
-
 TEST_F(SemanticMapCompress, curveTellsWhatTheTreesOfItsAlphasKeep) {
   const std::string weights =
       "{name: a, relevant: {post: 1}, irrelevant: {grass: 0.2}, alpha: 0.01, block_size: 3.2}";
@@ -190,29 +171,6 @@ TEST_F(SemanticMapCompress, curveTellsWhatTheTreesOfItsAlphasKeep) {
     EXPECT_NEAR(tree["classes"]["post"]["share"], point["relevantShare"], 1e-9);
     EXPECT_NEAR(tree["classes"]["grass"]["share"], point["irrelevantShare"], 1e-9);
   }
-}
-
-TEST_F(SemanticMapCompress, spaceOptionsAndRegionsReachTheSearch) {
-  using O = AbstractionOptions;
-  const auto expectSame = [&](const std::string& yaml, const std::function<void(O&)>& change) {
-    ASSERT_EQ(compress("{name: a, relevant: {post: 1}, alpha: 0.0005, " + yaml + "}").status, 0);
-    O options = optionsOf({relevant("a", 1, {1})}, 0.0005);
-    options.blockSize = O().blockSize;
-    change(options);
-    SemanticOcTree map = loadTree(mapFile());
-    setAbstraction(map, options);
-    EXPECT_TRUE(loadTree((output() / "a.semantic").string()) == Abstraction(map).compressedMap())
-        << yaml;
-  };
-  expectSame("block_size: 1.6", [](O& o) { o.blockSize = 1.6; });
-  expectSame("block_size: 0", [](O& o) { o.blockSize = 0; });
-  expectSame("unknown: uniform", [](O& o) { o.unknown = O::Unknown::Uniform; });
-  expectSame("regions: [box 0 -1 -2 1 2 3 5, sphere 1 2 0 2 0, corridor -3 0 0 0 -3 1 1.5 3]",
-             [](O& o) {
-               o.regions = {{Region::Shape::Box, {0, -1, -2}, {1, 2, 3}, 0, 5},
-                            {Region::Shape::Sphere, {1, 2, 0}, {0, 0, 0}, 2, 0},
-                            {Region::Shape::Corridor, {-3, 0, 0}, {0, -3, 1}, 1.5, 3}};
-             });
 }
 
 TEST_F(SemanticMapCompress, picturesAndFiguresShowSomething) {

@@ -4,13 +4,10 @@
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt_compat/Drawing.h>
 #include <octomap/ColorOcTree.h>
-#include <octomap/OcTree.h>
-#include <semantic_abstraction/Abstraction.h>
 #include <yaml-cpp/yaml.h>
 #include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 
@@ -223,23 +220,6 @@ TEST_F(SemanticMapExport, scenesHoldABoxPerOccupiedLeaf) {
   EXPECT_EQ(voxels->getVoxelCount(mrpt_compat::drawing::VOXEL_SET_OCCUPIED), countOccupied(map));
 }
 
-TEST_F(SemanticMapExport, compressedMapsAreMapsToo) {
-  SemanticOcTree full = map;
-  semantic_octree::AbstractionOptions options;
-  options.blockSize = 3.2;
-  options.weights.terms = {tree_abstraction::relevant("post", 1.0, {1})};
-  options.weights.alpha = 0.05;
-  setAbstraction(full, options);
-  const SemanticOcTree compressed = semantic_octree::Abstraction(full).compressedMap();
-  ASSERT_LT(compressed.getNumLeafNodes(), map.getNumLeafNodes() / 4);
-  saveTree(compressed, path("small.semantic"));
-  const ProgramRun run = succeeded(
-      exportTo({"s.ot", "s.bt", "s.ply", "s.csv", "s.gridmap", "g.yaml", "s.png", "s.3Dscene"}, {},
-               "small.semantic"));
-  EXPECT_EQ(verticesOf(folder.read("s.ply")).size(), countOccupied(compressed));
-  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 10);
-}
-
 TEST_F(SemanticMapExport, badInputIsRefusedByName) {
   expectRefusal(exportTo({"map.obj"}), {"map.obj", ".ply"});
   expectRefusal(exportTo({"a.yaml", "a.png"}), {"a.png", "twice"});
@@ -270,18 +250,7 @@ class ExportedOctrees : public MapTool {
     auto* tree = octomap::AbstractOcTree::read(path(name));
     return std::unique_ptr<Tree>(dynamic_cast<Tree*>(tree));
   }
-
-  /** Runs a tool of OctoMap's. \return what it prints; fails the test if it fails */
-  std::string tool(const std::string& command) const {
-    const std::string all = command + " > " + path("tool.txt") + " 2>&1";
-    EXPECT_EQ(std::system(all.c_str()), 0) << folder.read("tool.txt");
-    return folder.read("tool.txt");
-  }
 };
-
-#define SKIP_WITHOUT_OCTOMAP_TOOLS()                             \
-  if (std::system("command -v convert_octree > /dev/null") != 0) \
-  GTEST_SKIP() << "needs the package octomap-tools"
 
 }  // namespace
 
@@ -303,17 +272,4 @@ TEST_F(ExportedOctrees, octomapReadsEachLeafWithItsColor) {
     ASSERT_EQ(theirs->getColor(), octomap::ColorOcTreeNode::Color(color.r, color.g, color.b));
   }
   EXPECT_EQ(theirs, tree->end_leafs());
-}
-
-TEST_F(ExportedOctrees, convertOctreeKeepsWhatIsFreeAndOccupied) {
-  SKIP_WITHOUT_OCTOMAP_TOOLS();
-  ASSERT_EQ(exportTo({"map.bt"}).status, 0);
-  tool("convert_octree " + path("map.bt") + " " + path("converted.ot"));
-  const auto tree = read<octomap::OcTree>("converted.ot");
-  ASSERT_TRUE(tree);
-  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-    const auto* node = tree->search(leaf.getKey());
-    ASSERT_TRUE(node);
-    ASSERT_EQ(tree->isNodeOccupied(node), map.isNodeOccupied(*leaf));
-  }
 }

@@ -135,19 +135,6 @@ TEST(PathTracker, DoesNotSteerTheOtherWayAfterABend) {
     }
 }
 
-TEST(PathTracker, AloneStandsBeforeAPerson) {
-  PathTracker tracker({}, kRobotFootprint);
-  tracker.setPath(straight());
-  Drive drive;
-  drive.run([&](const ObstaclePoints& seen, double) {
-    tracker.locate(drive.state());
-    return tracker.command(drive.state(), seen, 1);
-  });
-  EXPECT_FALSE(drive.collided());
-  EXPECT_LT(drive.state().pose.x, 5.9 - 0.55);
-  EXPECT_GT(drive.state().pose.x, 4);
-}
-
 namespace fs = std::filesystem;
 
 namespace {
@@ -160,23 +147,15 @@ ReactiveNavigator::Options optionsOf(double width) {
 }
 
 /** A wall across the straight way, 3 m ahead, with a gap of 0.9 m in the middle; map frame. */
-ObstaclePoints3 wallWithGap(double height) {
-  ObstaclePoints3 points;
+ObstaclePoints wallWithGap() {
+  ObstaclePoints points;
   for (double y = 0.45; y < 4; y += 0.2)
-    for (const double side : {-1, 1}) points.emplace_back(3.0, side * y, height);
-  return points;
-}
-
-ObstaclePoints3 seenFrom(const mrpt::math::TPose2D& pose, ObstaclePoints3 points) {
-  for (Eigen::Vector3d& o : points) {
-    const mrpt::math::TPoint2D p = pose.inverseComposePoint({o.x(), o.y()});
-    o.head<2>() << p.x, p.y;
-  }
+    for (const double side : {-1, 1}) points.emplace_back(3.0, side * y);
   return points;
 }
 
 /** Whether it drives 6 m ahead, through the gap, within a quarter of a minute. */
-bool getsThrough(const ReactiveNavigator::Options& options, double height) {
+bool getsThrough(const ReactiveNavigator::Options& options) {
   ReactiveNavigator navigator(options);
   mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
   simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
@@ -185,7 +164,7 @@ bool getsThrough(const ReactiveNavigator::Options& options, double height) {
   navigator.setWaypoints({goal}, 0.4);
   for (int i = 0; i < 150; ++i) {
     mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
-    const auto seen = seenFrom(robot.state().pose, wallWithGap(height));
+    const auto seen = seenFrom(robot.state().pose, wallWithGap());
     robot.drive(navigator.step(robot.state(), seen, 0.1 * i), 0.1);
     if (navigator.status() == ReactiveNavigator::Status::Arrived) return true;
   }
@@ -201,8 +180,8 @@ struct Folder {
 }  // namespace
 
 TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
-  EXPECT_TRUE(getsThrough(optionsOf(0.2), 0.5));
-  EXPECT_FALSE(getsThrough(optionsOf(0.9), 0.5));
+  EXPECT_TRUE(getsThrough(optionsOf(0.2)));
+  EXPECT_FALSE(getsThrough(optionsOf(0.9)));
 }
 
 TEST(ReactiveNavigator, GoesAroundABendWithoutAStop) {
@@ -222,7 +201,7 @@ TEST(ReactiveNavigator, GoesAroundABendWithoutAStop) {
   double slowest = 1, seconds = 0;
   do {
     mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + seconds));
-    robot.drive(navigator.step(robot.state(), ObstaclePoints3(), seconds), 0.1);
+    robot.drive(navigator.step(robot.state(), ObstaclePoints(), seconds), 0.1);
     seconds += 0.1;
     if (seconds > 2 && robot.state().pose.y < places.back().y - 2)
       slowest = std::min(slowest, robot.state().speed);
@@ -250,19 +229,11 @@ TEST(ReactiveNavigator, CompletesTheFactorsThatNewerReleasesOfMrptWant) {
   EXPECT_EQ(read("factorWeights").size(), 8u);
 }
 
-TEST(ReactiveNavigator, WithSlicesGoesThroughAGapWhereItFitsAtThatHeight) {
-  ReactiveNavigator::Options options = optionsOf(0.9);
-  options.slices = {{0.5, Footprint::rectangle(0, 0.6, 0.9)},
-                    {1.0, Footprint::rectangle(0, 0.6, 0.2)}};  // a mast on a base
-  EXPECT_TRUE(getsThrough(options, 1.0));
-  EXPECT_FALSE(getsThrough(options, 0.3));
-}
-
 TEST(ReactiveNavigator, WritesALogThatMrptReads) {
   const Folder folder;
   ReactiveNavigator::Options options = optionsOf(0.2);
   options.logFolder = folder.path;
-  EXPECT_TRUE(getsThrough(options, 0.5));
+  EXPECT_TRUE(getsThrough(options));
   CompressedInput file((folder.path / "log_000.reactivenavlog").string());
   auto archive = mrpt::serialization::archiveFrom(file);
   int records = 0;
@@ -271,7 +242,7 @@ TEST(ReactiveNavigator, WritesALogThatMrptReads) {
     for (;; ++records) {
       mrpt::nav::CLogFileRecord record;
       archive >> record;
-      EXPECT_EQ(record.WS_Obstacles.size(), wallWithGap(0).size());
+      EXPECT_EQ(record.WS_Obstacles.size(), wallWithGap().size());
       EXPECT_EQ(record.infoPerPTG.size(), 3u);  // two, and going on as before
       farthest = std::max(farthest, record.robotPoseLocalization.x);
     }

@@ -118,9 +118,9 @@ TEST(DriveOptions, AreReadFromTheirSections) {
 }
 
 TEST(DriveOptions, AreReadInMrptsWayOfWritingToo) {
-  const auto config = loaded("maxSpeed = 0.5\ncompressedObstacles = 1\n");
+  const auto config = loaded("maxSpeed = 0.5\ncontrolPeriod = 0.05\n");
   EXPECT_EQ(config.drive.maxSpeed, 0.5);
-  EXPECT_TRUE(config.compressedObstacles);
+  EXPECT_EQ(config.controlPeriod, 0.05);
 }
 
 TEST(DriveOptions, WhatTheVehicleAndTheMapSayTheyFollow) {

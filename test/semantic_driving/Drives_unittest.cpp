@@ -78,11 +78,6 @@ TEST(Drives, BeginWithoutAMapAndArriveOnTheRoad) {
   EXPECT_LT(badLength(record.drivenPerClass, syntheticOrder()), 0.5);
 }
 
-TEST(Drives, AreTheSameEachTime) {
-  World world = plain();
-  EXPECT_EQ(toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})), toCsv(drive(world, {-6, 0, 0}, {0, 2, 0})));
-}
-
 TEST(Drives, GoOnWhileScansAreInsertedAndAreTheSameEachTime) {
   /** The path that it follows changes when the map has what was seen, not before. */
   struct Changes : DriveObserver {
@@ -137,15 +132,6 @@ TEST(Drives, InsertWhatTheyCanWhenMappingIsSlowerThanTheSensors) {
   EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
   EXPECT_NEAR(record.leaves.size(), record.duration() / (2 * config.sensors.period), 2)
       << "each second scan";
-}
-
-TEST(Drives, GetPastAPersonWhoWalksOntoTheWay) {
-  World world = plain();
-  Events events;
-  events.persons.push_back({4, 1e9, {0, 6}, {0, 0}, 1.5});
-  const DriveRecord record = drive(world, {-8, 0, 0}, {8, 0, 0}, events);
-  EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
-  EXPECT_EQ(record.collisions, 0);
 }
 
 TEST(Drives, AreAtRestWhereSomebodyWalksIntoTheirSide) {

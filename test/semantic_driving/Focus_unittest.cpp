@@ -54,8 +54,7 @@ class FromScratch : public simulated_drive::DriveObserver {
  public:
   void onSensed(const DriveLoop& loop, const std::vector<simulated_drive::Observation>&) override {
     SemanticOcTree anew = loop.mapper().map();
-    auto options =
-        semantic_planning::abstractionFor(syntheticOrder(), tree_abstraction::kPlanningAlpha, true);
+    auto options = semantic_planning::abstractionFor(syntheticOrder());
     options.regions = semantic_octree::Abstraction(anew).options().regions;
     dropAbstraction(anew);
     setAbstraction(anew, options);
@@ -103,7 +102,6 @@ TEST(Focus, IsAroundTheVehicleAndAlongThePathAhead) {
 TEST(Focus, MovesWithTheDriveAndTheTreeIsThatOfTheMapCompressedAnewToTheLastBit) {
   auto config = smallConfig();
   config.focus = someFocus();
-  config.compressedObstacles = true;
   synthetic_world::Solids solids;
   addWall(solids, {0, -6}, {0, -1});
   synthetic_world::World world = plain(solids);
@@ -118,15 +116,4 @@ TEST(Focus, MovesWithTheDriveAndTheTreeIsThatOfTheMapCompressedAnewToTheLastBit)
   EXPECT_GE(fromScratch.corridors, 3u);
   EXPECT_LT(fromScratch.leaves, fromScratch.leavesWithout / 2);
   EXPECT_EQ(record.leaves.size(), static_cast<std::size_t>(fromScratch.compared));
-}
-
-TEST(Focus, RefusesBadOptionsAndNamesThem) {
-  FocusOptions focus;
-  focus.corridor = -1;
-  try {
-    focus.validate();
-    FAIL();
-  } catch (const std::invalid_argument& e) {
-    EXPECT_NE(std::string(e.what()).find("corridor"), std::string::npos) << e.what();
-  }
 }

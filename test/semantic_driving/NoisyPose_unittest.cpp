@@ -113,12 +113,3 @@ TEST(NoisyPose, WithoutNoiseIsExact) {
   EXPECT_EQ(exact.times.count("localize"), 0u);
   EXPECT_FALSE(toJson(exact, syntheticOrder()).contains("poseError"));
 }
-
-TEST(NoisyPose, RefusesBadOptions) {
-  PoseOptions options;
-  options.odometryNoise = -0.1;
-  EXPECT_THROW(options.validate(), std::invalid_argument);
-  options = {};
-  options.turnNoise = 91;
-  EXPECT_THROW(options.validate(), std::invalid_argument);
-}

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/ObstacleSensing.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <synthetic_world/Objects.h>
@@ -41,20 +40,6 @@ bool contains(const ObstaclePoints& points, double x, double y) {
   });
 }
 
-/** Whether a point lies within the outline of points on a grid: none is left of it, say. */
-bool isEnclosed(const ObstaclePoints& border, const Eigen::Vector2d& p) {
-  const auto any = [&](auto predicate) {
-    return std::any_of(border.begin(), border.end(), [&](const Eigen::Vector2d& b) {
-      return predicate(b.x() - p.x(), b.y() - p.y());
-    });
-  };
-  constexpr double kSame = 1e-3;
-  return any([](double x, double y) { return std::abs(y) < kSame && x > -kSame; }) &&
-         any([](double x, double y) { return std::abs(y) < kSame && x < kSame; }) &&
-         any([](double x, double y) { return std::abs(x) < kSame && y > -kSame; }) &&
-         any([](double x, double y) { return std::abs(x) < kSame && y < kSame; });
-}
-
 }  // namespace
 
 TEST_F(ObstacleSensing, FindsWallsPostsAndForbiddenGround) {
@@ -75,40 +60,6 @@ TEST_F(ObstacleSensing, IsInTheVehiclesFrame) {
   planner.plan({0, 0, 0}, {0, -3, 0});
   const ObstaclePoints points = senseObstacles(planner, {1, 1, M_PI / 2}, 0);
   EXPECT_TRUE(contains(points, -0.9, -2.1));  // the wall at (3.1, 0.1)
-}
-
-TEST_F(ObstacleSensing, TellsHeightsOfWhatHangsAbove) {
-  world.box(0, 0.2, 3, 3.2, 0.6, 0.8, PaintedWorld::Wall);
-  map();
-  world.floor(-0.2, 0.4, 2.8, 3.4, PaintedWorld::Road);  // the ground below, seen from the side
-  world.map({0.1, 6, 0.4});
-  SemanticPlanner planner = this->planner();
-  planner.plan({0, 0, 0}, {0, -3, 0});
-  std::vector<double> heights;
-  for (const Eigen::Vector3d& p : senseObstacles3(planner, {0, 0, 0}, 0))
-    if (std::abs(p.x() - 0.1) < 1e-3 && std::abs(p.y() - 3.1) < 1e-3) heights.push_back(p.z());
-  ASSERT_EQ(heights.size(), 1u);
-  EXPECT_NEAR(heights[0], 0.7, 1e-6);
-}
-
-TEST_F(ObstacleSensing, OfTheCompressedTreeMissesNothing) {
-  SemanticPlanner planner = this->planner();
-  planner.plan({0, 0, 0}, {0, -3, 0});
-  const semantic_octree::Abstraction compressed(map());
-  for (const mrpt::math::TPose2D& pose : {mrpt::math::TPose2D(0, 0, 0), {1, -1, 0.5}, {-2, 3, 2}}) {
-    const ObstaclePoints full = senseObstacles(planner, pose, 0);
-    const ObstaclePoints border = senseCompressedObstacles(planner, compressed, pose, 0);
-    ObstaclePoints mapBorder;  // grids are parallel to the axes in the map's frame only
-    const auto inMap = [&](const Eigen::Vector2d& p) {
-      const auto q = pose.composePoint({p.x(), p.y()});
-      return Eigen::Vector2d(q.x, q.y);
-    };
-    for (const Eigen::Vector2d& p : border) mapBorder.push_back(inMap(p));
-    EXPECT_FALSE(full.empty());
-    for (const Eigen::Vector2d& p : full) {
-      EXPECT_TRUE(isEnclosed(mapBorder, inMap(p))) << inMap(p).transpose();
-    }
-  }
 }
 
 TEST(SeenFrom, IsWhereTheObstaclesAreForTheVehicleAfterItsMotion) {

@@ -123,14 +123,6 @@ TEST(Shapes, sectionsOfRoundShapesAreTight) {
   EXPECT_NEAR(cone.section(1, 9)->radius, 1.5, 1e-12);
 }
 
-TEST(Shapes, polyhedraRefuseBadInput) {
-  const Polygon clockwise(kOutline.rbegin(), kOutline.rend());
-  EXPECT_THROW(Polyhedron(clockwise, clockwise, 0, 1), std::invalid_argument);
-  EXPECT_THROW(Polyhedron(kOutline, {{0, 0}, {1, 0}, {0, 1}}, 0, 1), std::invalid_argument);
-  EXPECT_THROW(Polyhedron(kOutline, kOutline, 1, 1), std::invalid_argument);
-  EXPECT_THROW(Polyhedron::gable({0, 0}, 0, 1, 1, 2, 1), std::invalid_argument);
-}
-
 using synthetic_world::Curve;
 using V2 = Eigen::Vector2d;
 
@@ -174,25 +166,6 @@ TEST(Curve, parallelKeepsItsDistanceOnTheAskedSide) {
   }
 }
 
-TEST(Curve, refusesBadInput) {
-  EXPECT_EQ(errorOf([] { Curve({{0, 0}}, 1); }), "curve: 1 corners, at least 2 expected");
-  EXPECT_EQ(errorOf([] {
-              Curve({{0, 0}, {1, 0}}, 1, true);
-            }),
-            "curve: 2 corners, at least 3 expected");
-  EXPECT_EQ(errorOf([] { Curve({{0, 0}, {1, 0}}, 0); }), "curve: the radius must be positive");
-  EXPECT_EQ(errorOf([] {
-              Curve({{0, 0}, {2, 1}, {2, 1}}, 1);
-            }),
-            "curve: corner 1 equals the next one");
-  EXPECT_EQ(errorOf([] {
-              Curve({{0, 0}, {5, 0}, {1, 0}}, 1);
-            }),
-            "curve: a corner turns back on itself");
-  EXPECT_EQ(errorOf([] { Curve(kRing, 6, true).parallel(7); }),
-            "curve: too narrow for this parallel");
-}
-
 Polygon randomRectangle(Random& random) {
   return rectangle({random.uniform(-3, 3), random.uniform(-3, 3)}, random.uniform(-4, 4),
                    random.uniform(0.5, 4), random.uniform(0.5, 3));
@@ -229,16 +202,6 @@ TEST(Polygon, distanceIsZeroInsideAndWhereOneHoldsTheOther) {
   EXPECT_EQ(distance(big, V2(0.3, 0.3)), 0);
   EXPECT_EQ(distance(big, small), 0);
   EXPECT_EQ(distance(small, big), 0);
-}
-
-TEST(Polygon, whatIsNotConvexIsRefusedByName) {
-  const Polygon clockwise{{0, 0}, {0, 1}, {1, 1}, {1, 0}},
-      dented{{0, 0}, {2, 0}, {0.2, 0.2}, {0, 2}};
-  const Polygon line{{0, 0}, {1, 0}};
-  const Polygon star{{1, 0}, {-0.8, 0.6}, {0.3, -0.95}, {0.3, 0.95}, {-0.8, -0.6}};
-  for (const Polygon& p : {clockwise, dented, line, star})
-    EXPECT_EQ(errorOf([&] { requireConvex(p, "robot"); }),
-              "robot: three or more corners, convex, counterclockwise expected");
 }
 
 }  // namespace

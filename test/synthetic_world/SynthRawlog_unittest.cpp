@@ -71,29 +71,6 @@ TEST(SynthRawlog, unprojectedDepthsLandOnSurfacesOfTheirLabels) {
   }
 }
 
-TEST(SynthRawlog, lidarPointsLandOnSurfacesOfTheirClasses) {
-  const Folder folder;
-  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park --hills 2 --range-noise 0" + kSmall).status,
-            0);
-  const auto scene = makeScene("park", 1, 2);
-  const auto all = observationsOf(folder / "x.rawlog");
-  const auto poses = only<CObservationRobotPose>(all);
-  const auto clouds = only<CObservationLabeledCloud>(all);
-  for (int k = 0; k < 3; ++k) {
-    const CPose3D T_map_sensor = poses[k]->pose.mean + clouds[k]->sensorPose;
-    ASSERT_GT(clouds[k]->cloud.size(), 200u);
-    int wrong = 0;
-    for (std::size_t i = 0; i < clouds[k]->cloud.size(); ++i) {
-      const auto& q = clouds[k]->cloud.points[i];
-      const auto p = T_map_sensor.composePoint(mrpt::math::TPoint3D(q.x(), q.y(), q.z()));
-      const PointTruth truth = scene.world.at({p.x, p.y, p.z}, 1e-3);
-      EXPECT_EQ(truth.state, PointTruth::State::Surface);
-      wrong += truth.id != clouds[k]->cloud.classes[i];
-    }
-    EXPECT_LE(wrong, 3);
-  }
-}
-
 TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   const Folder folder;
   const std::string noise = kSmall + " --label-noise 0.1 --dropout 0.1 ";
@@ -105,19 +82,6 @@ TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   }
   ASSERT_EQ(run(folder, "-f -o b.rawlog" + noise + "--odometry --seed 10").status, 0);
   EXPECT_NE(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
-}
-
-TEST(SynthRawlog, trueTrajectoryStandsBesideTheRawlog) {
-  const Folder folder;
-  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park" + kSmall).status, 0);
-  const auto poses = only<CObservationRobotPose>(observationsOf(folder / "x.rawlog"));
-  const auto trajectory = labeled_cloud::loadTumTrajectory(folder / "x.tum");
-  EXPECT_EQ(trajectory.size(), poses.size());
-  for (const auto& pose : poses) {
-    const auto T = trajectory.at(pose->timestamp);
-    ASSERT_TRUE(T);
-    EXPECT_LT((T->asVectorVal() - pose->pose.mean.asVectorVal()).array().abs().maxCoeff(), 1e-6);
-  }
 }
 
 TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
@@ -135,17 +99,6 @@ TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
   EXPECT_LT((exact.asVectorVal() - way.asVectorVal()).array().abs().maxCoeff(), 1e-9);
   EXPECT_GT(noisy.distanceTo(way), 0.01);
   EXPECT_LT(noisy.distanceTo(way), 3);
-}
-
-TEST(SynthRawlog, truthFileNamesTheWorldAndItsClasses) {
-  const Folder folder;
-  ASSERT_EQ(run(folder, "-f -o x.rawlog --scene park --seed 12 --hills 0.5" + kSmall).status, 0);
-  const auto truth = mrpt::containers::yaml::FromFile((folder / "x.truth.yaml").string());
-  EXPECT_EQ(truth["scene"].as<std::string>(), "park");
-  EXPECT_EQ(truth["seed"].as<int>(), 12);
-  EXPECT_EQ(truth["hills"].as<double>(), 0.5);
-  EXPECT_EQ(truth["frames"].as<int>(), 3);
-  EXPECT_EQ(truth["classes"].asSequence().size(), 22u);
 }
 
 TEST(SynthRawlog, writesTheSameWorldInRugdsClasses) {
@@ -214,25 +167,6 @@ TEST(SynthRawlog, refusesAClassTableThatDoesNotFoldTheWorldOrIsTooLarge) {
   EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
 }
 
-TEST(SynthRawlog, answersWhatIsAtPoints) {
-  const Folder folder;
-  const auto scene = makeScene("village", 1);
-  const Eigen::Vector2d at = scene.route.at(60);
-  const double ground = scene.world.groundHeight(at.x(), at.y());
-  std::ofstream(folder / "points.txt") << std::setprecision(12) << "# x y z\n\n"
-                                       << at.x() << ' ' << at.y() << ' ' << ground + 0.01 << '\n'
-                                       << at.x() << ' ' << at.y() << ' ' << ground + 1 << '\n'
-                                       << at.x() << ' ' << at.y() << ' ' << ground - 1 << '\n';
-  const Outcome outcome = run(folder, "--truth-query points.txt");
-  ASSERT_EQ(outcome.status, 0) << outcome.error;
-  std::istringstream lines(outcome.out);
-  for (const std::string expected : {"surface 1 road", "free 0 -", "underground 1 road"}) {
-    std::string line;
-    ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_EQ(line.substr(line.size() - expected.size()), expected);
-  }
-}
-
 TEST(SynthRawlog, pictureOfTheWorldIsWritten) {
   const Folder folder;
   ASSERT_EQ(run(folder, "--scene park --picture p.png").status, 0);
@@ -243,31 +177,24 @@ TEST(SynthRawlog, pictureOfTheWorldIsWritten) {
 
 TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
   const Folder folder;
-  std::ofstream(folder / "short.txt") << "1 2 3\n4 5\n";
-  std::ofstream(folder / "nan.txt") << "1 2 nan\n";
-  std::ofstream(folder / "long.txt") << "1 2 3 4\n";
   const std::pair<std::string, std::string> cases[] = {
-      {"", "--output, --picture or --truth-query is required"},
+      {"", "--output or --picture is required"},
       {"-o x.rawlog --scene moon", "moon"},
       {"-o x.rawlog --sensor nose", "nose"},
       {"-o x.rawlog --frames 0", "--frames"},
       {"-o x.rawlog --rate 0", "--rate"},
       {"-o x.rawlog --speed -1", "--speed"},
       {"-o x.rawlog --hills 3", "--hills"},
-      {"-o x.rawlog --width 1", "CameraOptions::width"},
-      {"-o x.rawlog --fov 200", "CameraOptions::fov"},
+      {"-o x.rawlog --width 1", "--width is 1"},
+      {"-o x.rawlog --fov 200", "--fov is 200"},
       {"-o x.rawlog --camera-range 100", "--camera-range is 100"},
-      {"-o x.rawlog --rings 0", "LidarOptions::rings"},
-      {"-o x.rawlog --range-noise -1", "range_noise"},
-      {"-o x.rawlog --label-noise 2", "label_noise"},
-      {"-o x.rawlog --dropout nan", "dropout"},
+      {"-o x.rawlog --rings 0", "--rings is 0"},
+      {"-o x.rawlog --range-noise -1", "--range-noise is -1"},
+      {"-o x.rawlog --label-noise 2", "--label-noise is 2"},
+      {"-o x.rawlog --dropout nan", "--dropout is"},
       {"-o x.rawlog --unknown 1", "--unknown"},
       {"-o absent/x.rawlog", "absent/x.rawlog"},
-      {"--picture absent/p.png", "absent/p.png"},
-      {"--truth-query absent.txt", "absent.txt"},
-      {"--truth-query short.txt", "short.txt:2"},
-      {"--truth-query long.txt", "long.txt:1"},
-      {"--truth-query nan.txt", "nan.txt:1"}};
+      {"--picture absent/p.png", "absent/p.png"}};
   for (const auto& [arguments, reason] : cases) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_NE(outcome.status, 0) << arguments;

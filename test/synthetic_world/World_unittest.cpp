@@ -26,7 +26,6 @@ TEST(World, truthKnowsFreeSpaceSurfacesAndWhatIsBehindThem) {
   EXPECT_EQ(world.at({4.98, 0, 3}), (PointTruth{State::Free, kNoClass}));
   EXPECT_EQ(world.at({4.98, 0, 3}, 0.05), (PointTruth{State::Surface, kWall}));
   EXPECT_EQ(world.at({99, 0, -1}), (PointTruth{State::Free, kNoClass}));  // not of this world
-  EXPECT_THROW(world.at({0, 0, 0}, -1), std::invalid_argument);
 }
 
 TEST(World, surfacesHiddenInASolidAreInside) {
@@ -123,21 +122,6 @@ TEST(World, clearanceAgreesWithPointsOfSolidsInEveryScene) {
   }
 }
 
-TEST(World, footprintsNameTheirBadField) {
-  Footprint robot;
-  robot.height = 0.05;
-  EXPECT_EQ(errorOf([&] { robot.validate(); }),
-            "footprint: height is 0.050000, more than clearance expected");
-  robot = {};
-  robot.clearance = -1;
-  EXPECT_EQ(errorOf([&] { robot.validate(); }),
-            "footprint: clearance is -1.000000, 0 m or more expected");
-  robot = {};
-  robot.outline.pop_back(), robot.outline.pop_back();
-  EXPECT_EQ(errorOf([&] { robot.validate(); }),
-            "footprint: outline: three or more corners, convex, counterclockwise expected");
-}
-
 using V2 = Eigen::Vector2d;
 
 TEST(GroundCover, laterStrokesCoverEarlierOnes) {
@@ -171,12 +155,6 @@ TEST(GroundCover, stripAroundACurveIsWhatLiesWithinItsHalfWidth) {
     onRoad += far < 2;
   }
   EXPECT_GT(onRoad, 200);
-}
-
-TEST(GroundCover, strokesWithoutWidthOrLengthAreRefused) {
-  GroundCover cover(20, kGrass);
-  EXPECT_THROW(cover.paintDisk(kRoad, {0, 0}, 0), std::invalid_argument);
-  EXPECT_THROW(cover.paintBand(kRoad, {1, 1}, {1, 1}, 2), std::invalid_argument);
 }
 
 using synthetic_world::Random;
@@ -234,15 +212,6 @@ TEST(Terrain, raysEnterACellWhereMarchingFindsTheGround) {
     EXPECT_NEAR(p.z(), terrain.height(p.x(), p.y()), 1e-9);
   }
   EXPECT_GT(met, 300);
-}
-
-TEST(Terrain, refusesBadInput) {
-  EXPECT_EQ(errorOf([] { Terrain(0, {}); }), "terrain: halfExtent is 0, 1 to 1000 m expected");
-  EXPECT_EQ(errorOf([] {
-              Terrain(10, {{1, 4, 0, 0}});
-            }),
-            "terrain: a wave of 4.000000 m, 8 m or more expected");
-  EXPECT_EQ(errorOf([] { Terrain(10, {{NAN, 40, 0, 0}}); }), "terrain: a wave is not finite");
 }
 
 }  // namespace

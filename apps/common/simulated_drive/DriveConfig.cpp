@@ -26,8 +26,6 @@ namespace {
 /** Beside DriveOptions in the same section. */
 void describeLoop(DriveConfig& config, std::string& reactive, OptionList& list) {
   list.add("reactive", reactive, "", "file of MRPT's reactive navigator (.ini)");
-  list.add("compressed_obstacles", config.compressedObstacles, "",
-           "leaves of the compressed tree are obstacles");
   list.add("control_period", config.controlPeriod, "s", above(0), "between commands");
   list.add(
       "mapping_latency", config.mappingLatency, "s", strict_files::atLeast(0),

@@ -1,16 +1,42 @@
 #pragma once
 #include <map_folders/MapFolder.h>
+#include <mrpt/obs/CObservation.h>
 #include <synthetic_world/Scene.h>
+#include <synthetic_world/World.h>
 
 #include <functional>
 #include <memory>
 
+#include "DriveConfig.h"
 #include "DriveRecord.h"
 #include "Events.h"
 #include "SimulatedRobot.h"
-#include "SimulatedSensors.h"
 
 namespace simulated_drive {
+
+/** What one sensor saw, once. */
+struct Observation : semantic_slam::SensorScan {
+  mrpt::obs::CObservation::Ptr original;  ///< for the rawlog; null if not asked for
+};
+
+/** The camera and the LiDAR of the simulated robot. */
+class SimulatedSensors {
+ public:
+  /** \param keepOriginals make MRPT's observations, too */
+  SimulatedSensors(const SensorConfig& config, bool keepOriginals)
+      : m_config(config), m_keepOriginals(keepOriginals) {}
+
+  std::vector<Observation> sense(const synthetic_world::World& world,
+                                 const Eigen::Isometry3d& T_world_robot);
+
+ private:
+  Observation camera(const synthetic_world::World& world, const Eigen::Isometry3d& T_world_robot);
+  Observation lidar(const synthetic_world::World& world, const Eigen::Isometry3d& T_world_robot);
+
+  SensorConfig m_config;
+  bool m_keepOriginals;
+  std::uint64_t m_frame = 0;
+};
 
 class DriveLoop;
 
@@ -58,7 +84,6 @@ class DriveLoop {
   const DriveRecord& record() const { return m_record; }
   /** With the map; waits for the scan that is being inserted. */
   const semantic_slam::Mapper& mapper() const { return m_navigator.mapper(); }
-  semantic_octree::SemanticOcTree compressedMap() const;
   const semantic_driving::DriveGuide& guide() const { return m_navigator.guide(); }
   const semantic_driving::DriveController& controller() const { return m_navigator.controller(); }
   const mrpt::math::TPose2D& start() const { return m_start; }

@@ -1,8 +1,5 @@
-#include <semantic_octree/TreeFile.h>
-
 #include <algorithm>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 #include "StreamPackets.h"
@@ -21,8 +18,7 @@ struct MapReceiver::State {
   bool isDescribed = false;
   std::uint32_t checksum = 0;
 
-  std::unique_ptr<SemanticOcTree> kind;
-  std::unique_ptr<PartCoder> coder;
+  StreamKind kind;
   StreamTree tree;
   /** Mask and leaves of octets whose cubes are not there yet, by the cube. */
   std::multimap<CellPath, std::pair<std::uint8_t, std::string>> waiting;
@@ -100,18 +96,11 @@ void MapReceiver::State::describe(std::size_t number, const std::string& content
   for (const std::string& part : described) text += part;
   const StreamDescription d = StreamDescription::of(text);
   if (header.revision == 1) {
-    std::istringstream in(d.kind);
-    auto newKind = std::make_unique<SemanticOcTree>(readTree(in));
-    if (!newKind->empty()) throw std::runtime_error("altered: a description that holds a map");
-    auto newCoder = std::make_unique<PartCoder>(newKind->numClasses(), d.rootDepth);
-    std::size_t next = 0;
-    newCoder->fromText(d.coding, next);
+    kind = d.read();
     tree = StreamTree();  // what was placed after another description, which failed
     waiting.clear();
-    kind = std::move(newKind);
-    coder = std::move(newCoder);
   }
-  kind->setCalibration({d.power, 0});
+  kind.empty->setCalibration({d.power, 0});
   checksum = d.checksum;
   for (const std::string& packet : unreadable) apply(packet);
   unreadable.clear();
@@ -119,7 +108,7 @@ void MapReceiver::State::describe(std::size_t number, const std::string& content
 }
 
 void MapReceiver::State::apply(const std::string& content) {
-  for (const TreePart& part : coder->decode(content)) place(part);
+  for (const TreePart& part : kind.coder->decode(content)) place(part);
 }
 
 void MapReceiver::State::place(const TreePart& part) {
@@ -147,7 +136,7 @@ void MapReceiver::State::release(const CellPath& cell) {
 }
 
 void MapReceiver::State::finish() {
-  if (waiting.empty() && checksumOf(tree.map(*kind)) == checksum) return;
+  if (waiting.empty() && checksumOf(tree.map(*kind.empty)) == checksum) return;
   throw std::runtime_error("altered: what came is not the sender's map");
 }
 
@@ -161,14 +150,14 @@ bool MapReceiver::isComplete() const {
   return m_state->header.revision > 0 && m_state->numCome == m_state->came.size();
 }
 bool MapReceiver::isFinished() const { return isComplete() && m_state->header.isLast; }
-bool MapReceiver::hasMap() const { return m_state->kind != nullptr; }
+bool MapReceiver::hasMap() const { return m_state->kind.empty != nullptr; }
 std::size_t MapReceiver::numLeaves() const { return m_state->tree.numLeaves(); }
 std::size_t MapReceiver::numPackets() const { return m_state->numCome; }
 std::size_t MapReceiver::numExpected() const { return m_state->came.size(); }
 
 SemanticOcTree MapReceiver::map() const {
   if (!hasMap()) throw std::logic_error("no map was received yet");
-  return m_state->tree.map(*m_state->kind);
+  return m_state->tree.map(*m_state->kind.empty);
 }
 
 StreamPrefix MapReceiver::prefix() const {

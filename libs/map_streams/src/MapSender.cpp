@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -13,22 +12,10 @@ namespace {
 
 constexpr std::size_t kMaxDescriptionPackets = 255;
 
-struct Packet {
-  std::string content;
-  StreamPrefix prefix;
+struct Packet : PacketContent {
   bool hasCome = false, isQueued = false;
   std::uint32_t sequence = 0;  ///< when it was sent last; 0: never
 };
-
-std::vector<Packet> packetsOf(const TreeParts& parts, const PartCoder& coder) {
-  std::vector<Packet> packets;
-  for (PacketContent& packet : semantic_octree::packetsOf(parts, coder, kMaxContent)) {
-    packets.emplace_back();
-    packets.back().content = std::move(packet.bytes);
-    packets.back().prefix = packet.prefix;
-  }
-  return packets;
-}
 
 }  // namespace
 
@@ -78,14 +65,14 @@ void MapSender::setMap(SemanticOcTree& map, bool isLast) {
   auto parts = std::make_unique<TreeParts>(partsOfChange(map, s.told));
   auto coder = std::make_unique<PartCoder>(
       s.coder ? *s.coder : coderFor(*parts, map.numClasses(), abstraction.rootDepth()));
-  std::vector<Packet> data = packetsOf(*parts, *coder);
+  std::vector<PacketContent> data = packetsOf(*parts, *coder, kMaxContent);
   StreamTree told = isLast ? StreamTree() : s.told;
   for (std::size_t i = 0; !isLast && i < parts->parts.size(); ++i)
     told.apply(parts->parts.part(i), s.header.revision + 1u);
   parts = nullptr;
   std::vector<Packet> all = s.description(abstraction.compressedMap(), *coder, *kind);
   const std::size_t numDescription = all.size();
-  std::move(data.begin(), data.end(), std::back_inserter(all));
+  for (PacketContent& content : data) all.push_back({std::move(content)});
   if (all.size() > kMaxPackets)
     throw std::invalid_argument("a map of " + std::to_string(all.size()) +
                                 " packets is too large to be sent");
@@ -103,17 +90,15 @@ std::vector<Packet> MapSender::State::description(const SemanticOcTree& compress
   StreamDescription d;
   d.checksum = checksumOf(compressed);
   d.power = compressed.filterParameters().calibration.power;
-  d.rootDepth = with.rootDepth();
+  d.rootDepth = static_cast<std::uint8_t>(with.rootDepth());
   if (header.revision == 0) {
     d.coding = with.toText();
     d.kind = fileOf(like);
   }
   const std::string text = d.compressed();
   std::vector<Packet> described;
-  for (std::size_t at = 0; at < text.size(); at += kMaxContent) {
-    described.emplace_back();
-    described.back().content = text.substr(at, kMaxContent);
-  }
+  for (std::size_t at = 0; at < text.size(); at += kMaxContent)
+    described.push_back({{text.substr(at, kMaxContent), {}}});
   if (described.size() > kMaxDescriptionPackets)
     throw std::invalid_argument("a class table too long to be sent");
   return described;
@@ -135,7 +120,7 @@ void MapSender::State::countPrefixes() {
   for (const Packet& packet : packets) {
     prefixes.push_back(packet.prefix);
     prefixes.back().packets = prefixes.size();
-    prefixes.back().bytes = bytes += kHeaderBytes + packet.content.size();
+    prefixes.back().bytes = bytes += kHeaderBytes + packet.bytes.size();
   }
 }
 
@@ -157,7 +142,7 @@ std::optional<Datagram> MapSender::next() {
   s.header.number = static_cast<std::uint32_t>(number);
   s.header.isOptimal = packet.prefix.alpha.has_value();
   s.header.alpha = static_cast<float>(packet.prefix.alpha.value_or(0));
-  return Datagram{Datagram::Type::Data, s.stream, s.header.bytes() + packet.content};
+  return Datagram{Datagram::Type::Data, s.stream, s.header.bytes() + packet.bytes};
 }
 
 void MapSender::State::lose(std::size_t number) {

@@ -4,6 +4,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "Bytes.h"
+
 namespace semantic_octree {
 
 /** How parts become bits, in both directions: see RangeCoder.h.
@@ -252,33 +254,6 @@ struct LeafCounts {
   }
 };
 
-template <typename T>
-void put(std::string& text, const T& value) {
-  text.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-template <typename T>
-T get(const std::string& text, std::size_t& next) {
-  if (text.size() - next < sizeof(T)) throw std::runtime_error("altered: a description too short");
-  T value;
-  std::memcpy(&value, text.data() + next, sizeof(T));
-  next += sizeof(T);
-  return value;
-}
-
-template <typename T>
-void putAll(std::string& text, const std::vector<T>& values) {
-  put(text, static_cast<std::uint8_t>(values.size()));
-  for (const T& value : values) put(text, value);
-}
-
-template <typename T>
-std::vector<T> getAll(const std::string& text, std::size_t& next) {
-  std::vector<T> values(get<std::uint8_t>(text, next));
-  for (T& value : values) value = get<T>(text, next);
-  return values;
-}
-
 }  // namespace
 
 PartCoder::PartCoder(int numClasses, int rootDepth)
@@ -317,15 +292,15 @@ std::string PartCoder::encode(const std::vector<const TreePart*>& parts) const {
     TreePart copy = *part;
     format.code(copy);
   }
-  std::string bytes;
-  put(bytes, static_cast<std::uint16_t>(parts.size()));
-  return bytes + encoder.finish();
+  ByteWriter writer;
+  writer.value(static_cast<std::uint16_t>(parts.size()));
+  return writer.bytes + encoder.finish();
 }
 
 std::vector<TreePart> PartCoder::decode(const std::string& bytes) const {
-  std::size_t next = 0;
-  std::vector<TreePart> parts(get<std::uint16_t>(bytes, next));
-  const std::string coded = bytes.substr(next);
+  ByteReader reader(bytes);
+  std::vector<TreePart> parts(reader.take<std::uint16_t>());
+  const std::string coded = reader.rest();
   RangeDecoder decoder(m_models, coded);
   PartFormat<RangeDecoder> format(*this, decoder);
   for (TreePart& part : parts) format.code(part);
@@ -333,17 +308,17 @@ std::vector<TreePart> PartCoder::decode(const std::string& bytes) const {
 }
 
 std::string PartCoder::toText() const {
-  std::string text;
-  putAll(text, m_plain);
-  putAll(text, m_rests);
-  putAll(text, m_differences);
-  put(text, static_cast<std::uint8_t>(m_records.size()));
+  ByteWriter writer;
+  writer.list(m_plain);
+  writer.list(m_rests);
+  writer.list(m_differences);
+  writer.value(static_cast<std::uint8_t>(m_records.size()));
   for (const StreamLeaf& leaf : m_records) {
-    put(text, leaf.record);
-    put(text, leaf.value);
+    writer.value(leaf.record);
+    writer.value(leaf.value);
   }
-  for (const std::uint16_t model : m_models) put(text, static_cast<std::uint8_t>(model >> 3));
-  return text;
+  for (const std::uint16_t model : m_models) writer.value(static_cast<std::uint8_t>(model >> 3));
+  return writer.bytes;
 }
 
 /** As if each were told anew: what cannot be is refused. */
@@ -359,19 +334,20 @@ void PartCoder::checkRecords() const {
   }
 }
 
-void PartCoder::fromText(const std::string& text, std::size_t& next) {
-  m_plain = getAll<Units>(text, next);
-  m_rests = getAll<Units>(text, next);
-  m_differences = getAll<Units>(text, next);
-  m_records.assign(get<std::uint8_t>(text, next), StreamLeaf());
+void PartCoder::fromText(const std::string& text) {
+  ByteReader reader(text);
+  reader.list(m_plain);
+  reader.list(m_rests);
+  reader.list(m_differences);
+  m_records.assign(reader.take<std::uint8_t>(), StreamLeaf());
   for (StreamLeaf& leaf : m_records) {
     leaf.kind = StreamLeaf::Kind::WithRecord;
-    leaf.record = get<ClassRecord>(text, next);
-    leaf.value = get<Units>(text, next);
+    reader.value(leaf.record);
+    reader.value(leaf.value);
   }
   checkRecords();
   for (std::uint16_t& model : m_models) {
-    const auto p = get<std::uint8_t>(text, next);
+    const auto p = reader.take<std::uint8_t>();
     if (p == 0) throw std::runtime_error("altered: a probability of 0");
     model = static_cast<std::uint16_t>(p << 3);
   }

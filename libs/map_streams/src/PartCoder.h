@@ -160,8 +160,8 @@ class PartCoder {
   std::vector<TreePart> decode(const std::string& bytes) const;
 
   std::string toText() const;
-  /** \throw std::runtime_error as decode(). \param next where it begins in the text, and ends */
-  void fromText(const std::string& text, std::size_t& next);
+  /** \throw std::runtime_error as decode(). */
+  void fromText(const std::string& text);
 
  private:
   template <typename Coder>

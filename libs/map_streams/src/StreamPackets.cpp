@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <deque>
 #include <ostream>
@@ -12,11 +13,19 @@
 #include <stdexcept>
 #include <streambuf>
 
+#include "Bytes.h"
+
 namespace semantic_octree {
 namespace {
 
 constexpr std::size_t kMaxBehind = 900;  // bytes
-constexpr std::size_t kFixedBytes = 10;
+
+template <class Bytes, class Receipt>
+void codeReceipt(Bytes& bytes, Receipt& r) {
+  bytes.value(r.revision);
+  bytes.value(r.sequence);
+  bytes.value(r.prefix);
+}
 
 }  // namespace
 
@@ -35,57 +44,20 @@ StreamReceipt StreamReceipt::of(std::uint16_t revision, std::uint32_t sequence,
 }
 
 std::string StreamReceipt::bytes() const {
-  std::string bytes(kFixedBytes, '\0');
-  std::memcpy(&bytes[0], &revision, 2);
-  std::memcpy(&bytes[2], &sequence, 4);
-  std::memcpy(&bytes[6], &prefix, 4);
-  return bytes + behind;
+  ByteWriter writer;
+  codeReceipt(writer, *this);
+  return writer.bytes + behind;
 }
 
 StreamReceipt StreamReceipt::of(const std::string& bytes) {
-  if (bytes.size() < kFixedBytes) throw std::runtime_error("altered: a receipt too short");
+  ByteReader reader(bytes);
   StreamReceipt r;
-  std::memcpy(&r.revision, &bytes[0], 2);
-  std::memcpy(&r.sequence, &bytes[2], 4);
-  std::memcpy(&r.prefix, &bytes[6], 4);
-  r.behind = bytes.substr(kFixedBytes);
+  codeReceipt(reader, r);
+  r.behind = reader.rest();
   return r;
 }
 
 namespace {
-
-/** Appends, or takes from a place on. */
-class Fields {
- public:
-  explicit Fields(std::string& bytes, std::size_t next = 0) : m_bytes(bytes), m_next(next) {}
-  template <typename T>
-  void put(T value) {
-    m_bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-  }
-  template <typename T>
-  T get() {
-    if (m_bytes.size() - m_next < sizeof(T))
-      throw std::runtime_error("altered: a packet too short");
-    T value;
-    std::memcpy(&value, m_bytes.data() + m_next, sizeof(T));
-    m_next += sizeof(T);
-    return value;
-  }
-  void putText(const std::string& text) {
-    put(static_cast<std::uint32_t>(text.size()));
-    m_bytes += text;
-  }
-  std::string getText() {
-    const auto size = get<std::uint32_t>();
-    if (m_bytes.size() - m_next < size) throw std::runtime_error("altered: a packet too short");
-    m_next += size;
-    return m_bytes.substr(m_next - size, size);
-  }
-
- private:
-  std::string& m_bytes;
-  std::size_t m_next;
-};
 
 constexpr std::uint8_t kLastFlag = 1, kOptimalFlag = 2;
 constexpr std::uint32_t kMaxDescription = 1 << 24;
@@ -199,32 +171,36 @@ class Packer {
 
 }  // namespace
 
+namespace {
+
+template <class Bytes>
+void codeHeader(Bytes& bytes, PacketHeader& h) {
+  auto flags =
+      static_cast<std::uint8_t>((h.isLast ? kLastFlag : 0) | (h.isOptimal ? kOptimalFlag : 0));
+  bytes.value(h.revision);
+  bytes.value(h.numDescription);
+  bytes.value(flags);
+  bytes.value(h.number);
+  bytes.value(h.count);
+  bytes.value(h.sequence);
+  bytes.value(h.alpha);
+  h.isLast = flags & kLastFlag;
+  h.isOptimal = flags & kOptimalFlag;
+}
+
+}  // namespace
+
 std::string PacketHeader::bytes() const {
-  std::string text;
-  Fields fields(text);
-  fields.put(revision);
-  fields.put(numDescription);
-  fields.put(static_cast<std::uint8_t>((isLast ? kLastFlag : 0) | (isOptimal ? kOptimalFlag : 0)));
-  fields.put(number);
-  fields.put(count);
-  fields.put(sequence);
-  fields.put(alpha);
-  return text;
+  ByteWriter writer;
+  PacketHeader copy = *this;
+  codeHeader(writer, copy);
+  return writer.bytes;
 }
 
 PacketHeader PacketHeader::of(const std::string& payload) {
-  std::string text = payload.substr(0, kBytes);
-  Fields fields(text);
+  ByteReader reader(payload);
   PacketHeader h;
-  h.revision = fields.get<std::uint16_t>();
-  h.numDescription = fields.get<std::uint8_t>();
-  const auto flags = fields.get<std::uint8_t>();
-  h.isLast = flags & kLastFlag;
-  h.isOptimal = flags & kOptimalFlag;
-  h.number = fields.get<std::uint32_t>();
-  h.count = fields.get<std::uint32_t>();
-  h.sequence = fields.get<std::uint32_t>();
-  h.alpha = fields.get<float>();
+  codeHeader(reader, h);
   const bool fine = h.revision > 0 && h.numDescription > 0 && h.numDescription <= h.count &&
                     h.number < h.count && h.count <= MapSender::kMaxPackets;
   if (!fine) throw std::runtime_error("altered: a packet's numbers cannot be");
@@ -233,52 +209,60 @@ PacketHeader PacketHeader::of(const std::string& payload) {
 
 namespace {
 
-double powerIn(Fields& fields) {
-  const auto power = fields.get<double>();
+void checkPower(double power) {
   if (!(power > 0 && power <= 4)) throw std::runtime_error("altered: a power that cannot be");
-  return power;
+}
+
+template <class Bytes, class Description>
+void codeDescription(Bytes& bytes, Description& d) {
+  bytes.value(d.checksum);
+  bytes.value(d.rootDepth);
+  bytes.text(d.coding);
+  bytes.text(d.kind);
+  bytes.value(d.power);
 }
 
 }  // namespace
 
 std::string StreamDescription::compressed() const {
-  std::string text;
-  Fields fields(text);
-  fields.put(checksum);
-  fields.put(static_cast<std::uint8_t>(rootDepth));
-  fields.putText(coding);
-  fields.putText(kind);
-  fields.put(power);
-  uLongf size = compressBound(text.size());
+  ByteWriter plain, result;
+  codeDescription(plain, *this);
+  uLongf size = compressBound(plain.bytes.size());
   std::string packed(size, '\0');
   compress2(reinterpret_cast<Bytef*>(&packed[0]), &size,
-            reinterpret_cast<const Bytef*>(text.data()), text.size(), Z_BEST_COMPRESSION);
+            reinterpret_cast<const Bytef*>(plain.bytes.data()), plain.bytes.size(),
+            Z_BEST_COMPRESSION);
   packed.resize(size);
-  std::string result;
-  Fields(result).put(static_cast<std::uint32_t>(text.size()));
-  return result + packed;
+  result.value(static_cast<std::uint32_t>(plain.bytes.size()));
+  return result.bytes + packed;
 }
 
 StreamDescription StreamDescription::of(const std::string& compressed) {
-  std::string packed = compressed;
-  const auto expected = Fields(packed).get<std::uint32_t>();
+  const auto expected = ByteReader(compressed).take<std::uint32_t>();
   if (expected > kMaxDescription) throw std::runtime_error("altered: a description too long");
-  std::string text(expected, '\0');
+  std::string plain(expected, '\0');
   uLongf size = expected;
-  const auto* from = reinterpret_cast<const Bytef*>(packed.data()) + sizeof(expected);
-  if (uncompress(reinterpret_cast<Bytef*>(&text[0]), &size, from,
-                 packed.size() - sizeof(expected)) != Z_OK ||
+  const auto* from = reinterpret_cast<const Bytef*>(compressed.data()) + sizeof(expected);
+  if (uncompress(reinterpret_cast<Bytef*>(&plain[0]), &size, from,
+                 compressed.size() - sizeof(expected)) != Z_OK ||
       size != expected)
     throw std::runtime_error("altered: a description that cannot be unpacked");
-  Fields fields(text);
+  ByteReader reader(plain);
   StreamDescription d;
-  d.checksum = fields.get<std::uint32_t>();
-  d.rootDepth = fields.get<std::uint8_t>();
+  codeDescription(reader, d);
   if (d.rootDepth > kTreeDepth) throw std::runtime_error("altered: trees below the voxels");
-  d.coding = fields.getText();
-  d.kind = fields.getText();
-  d.power = powerIn(fields);
+  checkPower(d.power);
   return d;
+}
+
+StreamKind StreamDescription::read() const {
+  std::istringstream in(kind);
+  StreamKind read;
+  read.empty = std::make_unique<SemanticOcTree>(readTree(in));
+  if (!read.empty->empty()) throw std::runtime_error("altered: a description that holds a map");
+  read.coder = std::make_unique<PartCoder>(read.empty->numClasses(), rootDepth);
+  read.coder->fromText(coding);
+  return read;
 }
 
 std::string fileOf(const SemanticOcTree& map) {
@@ -358,42 +342,45 @@ Datagram Datagram::of(const std::string& bytes) {
 }
 
 namespace {
-constexpr char kTreeMark[] = {'S', 'O', 'T', 1};  // the last one is the version
+
+using TreeMark = std::array<char, 4>;
+constexpr TreeMark kTreeMark{'S', 'O', 'T', 1};  // the last one is the version
+
+template <class Bytes, class Message>
+void codeMessage(Bytes& bytes, Message& m) {
+  bytes.value(m.stream);
+  bytes.value(m.number);
+  bytes.flag(m.isAll);
+  bytes.text(m.description);
+  bytes.value(m.power);
 }
 
+}  // namespace
+
 std::string TreeMessage::bytes() const {
-  std::string bytes(sizeof(std::uint32_t), '\0');
-  bytes.append(kTreeMark, sizeof(kTreeMark));
-  Fields fields(bytes);
-  fields.put(stream);
-  fields.put(number);
-  fields.put(static_cast<std::uint8_t>(isAll));
-  fields.putText(description);
-  fields.put(power);
-  fields.put(static_cast<std::uint32_t>(parts.size()));
-  for (const std::string& group : parts) fields.putText(group);
-  const std::uint32_t crc = crcOf(bytes, sizeof(crc));
-  std::memcpy(&bytes[0], &crc, sizeof(crc));
-  return bytes;
+  ByteWriter writer;
+  writer.value(std::uint32_t(0));  // the checksum
+  writer.value(kTreeMark);
+  codeMessage(writer, *this);
+  writer.value(static_cast<std::uint32_t>(parts.size()));
+  for (const std::string& group : parts) writer.text(group);
+  const std::uint32_t crc = crcOf(writer.bytes, sizeof(crc));
+  std::memcpy(&writer.bytes[0], &crc, sizeof(crc));
+  return writer.bytes;
 }
 
 TreeMessage TreeMessage::of(const std::string& bytes) {
-  std::string text = bytes;
-  Fields fields(text);
-  const auto crc = fields.get<std::uint32_t>();
-  for (const char c : kTreeMark)
-    if (fields.get<char>() != c)
-      throw std::runtime_error("no change of a compressed tree, or one of another version");
-  if (crc != crcOf(text, sizeof(crc)))
+  ByteReader reader(bytes);
+  const auto crc = reader.take<std::uint32_t>();
+  if (reader.take<TreeMark>() != kTreeMark)
+    throw std::runtime_error("no change of a compressed tree, or one of another version");
+  if (crc != crcOf(bytes, sizeof(crc)))
     throw std::runtime_error("altered: a change whose checksum does not match");
   TreeMessage m;
-  m.stream = fields.get<std::uint32_t>();
-  m.number = fields.get<std::uint32_t>();
-  m.isAll = fields.get<std::uint8_t>() != 0;
-  m.description = fields.getText();
-  m.power = powerIn(fields);
-  for (auto groups = fields.get<std::uint32_t>(); groups > 0; --groups)
-    m.parts.push_back(fields.getText());
+  codeMessage(reader, m);
+  checkPower(m.power);
+  for (auto groups = reader.take<std::uint32_t>(); groups > 0; --groups)
+    reader.text(m.parts.emplace_back());
   return m;
 }
 

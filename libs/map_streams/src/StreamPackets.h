@@ -53,11 +53,17 @@ struct PacketHeader {
 constexpr std::size_t kHeaderBytes = 12 + PacketHeader::kBytes;
 constexpr std::size_t kMaxContent = kMaxDatagramBytes - kHeaderBytes;
 
+/** Of which kind a tree's maps are, and how its parts are coded. */
+struct StreamKind {
+  std::unique_ptr<SemanticOcTree> empty;
+  std::unique_ptr<PartCoder> coder;
+};
+
 /** What is told before the parts: of the first map which classes it has, how its parts are coded,
  * and of each a checksum of its file. */
 struct StreamDescription {
   std::uint32_t checksum = 0;
-  int rootDepth = 0;
+  std::uint8_t rootDepth = 0;
   std::string coding;  ///< PartCoder::toText()
   std::string kind;    ///< an empty map as a file
   double power = 1;    ///< of the map's calibration
@@ -65,6 +71,8 @@ struct StreamDescription {
   std::string compressed() const;
   /** \throw std::runtime_error altered. */
   static StreamDescription of(const std::string& compressed);
+  /** What it says of `coding` and `kind`. \throw std::runtime_error altered. */
+  StreamKind read() const;
 };
 
 /** What TreeBroadcast tells at once. */

@@ -1,13 +1,11 @@
 #include <map_streams/MapStream.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/MapFollower.h>
-#include <semantic_octree/TreeFile.h>
 #include <semantic_octree/store/TileCodes.h>
 
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include "StreamPackets.h"
@@ -69,7 +67,7 @@ bool TreeBroadcast::State::fitPower(const Abstraction& abstraction) {
 
 std::string TreeBroadcast::State::description() const {
   StreamDescription d;
-  d.rootDepth = coder->rootDepth();
+  d.rootDepth = static_cast<std::uint8_t>(coder->rootDepth());
   d.coding = coder->toText();
   d.kind = fileOf(*kind);
   return d.compressed();
@@ -132,8 +130,7 @@ std::string TreeBroadcast::all() const {
 
 struct TreeCopy::State {
   std::uint32_t stream = 0, number = 0, heard = 0;  ///< changes that it holds; that it heard of
-  std::unique_ptr<SemanticOcTree> kind;
-  std::unique_ptr<PartCoder> coder;
+  StreamKind kind;
   StreamTree tree;
   std::map<std::uint32_t, TreeMessage> waiting;
 
@@ -171,21 +168,13 @@ bool TreeCopy::accept(const std::string& message) {
 /** If it fails, what is there counts no longer. */
 void TreeCopy::State::take(const TreeMessage& m) {
   number = 0;
-  if (!m.description.empty()) {
-    const StreamDescription d = StreamDescription::of(m.description);
-    std::istringstream in(d.kind);
-    kind = std::make_unique<SemanticOcTree>(readTree(in));
-    if (!kind->empty()) throw std::runtime_error("altered: a description that holds a map");
-    coder = std::make_unique<PartCoder>(kind->numClasses(), d.rootDepth);
-    std::size_t next = 0;
-    coder->fromText(d.coding, next);
-  }
-  if (!coder || (m.isAll && m.description.empty()))
+  if (!m.description.empty()) kind = StreamDescription::of(m.description).read();
+  if (!kind.coder || (m.isAll && m.description.empty()))
     throw std::runtime_error("altered: nothing says of which kind the tree is");
-  kind->setCalibration({m.power, 0});
+  kind.empty->setCalibration({m.power, 0});
   if (m.isAll) tree = StreamTree();
   for (const std::string& group : m.parts)
-    for (const TreePart& part : coder->decode(group))
+    for (const TreePart& part : kind.coder->decode(group))
       if (!tree.apply(part, m.number))
         throw std::runtime_error("altered: children of what is not there");
   number = m.number;
@@ -203,8 +192,8 @@ bool TreeCopy::isCurrent() const {
 }
 
 SemanticOcTree TreeCopy::map() const {
-  if (!m_state->kind) throw std::logic_error("no tree was received yet");
-  return m_state->tree.map(*m_state->kind);
+  if (!m_state->kind.empty) throw std::logic_error("no tree was received yet");
+  return m_state->tree.map(*m_state->kind.empty);
 }
 
 std::size_t TreeCopy::numLeaves() const { return m_state->tree.numLeaves(); }

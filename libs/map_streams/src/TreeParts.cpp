@@ -95,26 +95,47 @@ struct Before {
   bool is(const StreamLeaf& leaf) const { return kind == Kind::Leaf && leafOf(node) == leaf; }
 };
 
+/** A map's compressed tree. */
+struct CompressedMap {
+  const SemanticOcTree& map;
+  const Abstraction& abstraction;
+
+  bool isInner(const Node& node) const { return node && abstraction.isExpanded(node); }
+  StreamLeaf leafOf(const Node& node) const {
+    return node ? StreamLeaf::of(contentOf(node, map.numClasses())) : StreamLeaf();
+  }
+};
+
+/** A tree as it was told. */
+struct ToldTree {
+  bool isInner(const Node& node) const { return node && !node.isLeaf(); }
+  /** Where an inner node will be there is any leaf before; the last one again takes least. */
+  StreamLeaf leafOf(const Node& node) {
+    if (!node) return {};
+    if (node.isLeaf()) m_last = semantic_octree::leafOf(node);
+    return m_last;
+  }
+
+ private:
+  StreamLeaf m_last{{}, 0, StreamLeaf::Kind::Plain};
+};
+
+/** What leads to a tree from what was there before. */
+template <class Tree>
 class Comparison {
  public:
   /** \param steps null: all parts are of one \param changed null: anywhere */
-  Comparison(const SemanticOcTree& map, const Abstraction& abstraction, const StreamTree& before,
-             Steps* steps, const ChangedCells* changed, PartList& parts)
-      : m_map(map),
-        m_abstraction(abstraction),
-        m_before(before),
+  Comparison(Tree tree, int rootDepth, Steps* steps, const ChangedCells* changed, PartList& parts)
+      : m_tree(std::move(tree)),
+        m_rootDepth(rootDepth),
         m_steps(steps),
         m_changed(changed),
-        m_rootDepth(abstraction.rootDepth()),
         m_parts(parts) {}
 
-  void run() { compare(m_map.root(), CellPath(), Before::of(m_before.root())); }
+  void run(const Node& root, const Node& before) { compare(root, CellPath(), Before::of(before)); }
 
  private:
-  bool isInner(const Node& node) const { return node && m_abstraction.isExpanded(node); }
-  StreamLeaf leafOf(const Node& node) const {
-    return node ? StreamLeaf::of(contentOf(node, m_map.numClasses())) : StreamLeaf();
-  }
+  bool isInner(const Node& node) const { return m_tree.isInner(node); }
   bool mayDiffer(const CellPath& cell) const { return !m_changed || m_changed->touch(cell); }
 
   /** At the depth of the roots and above. */
@@ -124,10 +145,10 @@ class Comparison {
     if (inner && cell.depth < m_rootDepth) {
       for (int i = 0; i < 8; ++i) compare(node.child(i), cell.child(i), before.child(i));
     } else if (inner) {
-      if (!before.isNode()) addLeaf(cell, leafOf(node));
+      if (!before.isNode()) addLeaf(cell, m_tree.leafOf(node));
       compareOctet(node, cell, before, 0);
     } else if (node || before.kind != Before::Kind::None) {
-      const StreamLeaf leaf = leafOf(node);
+      const StreamLeaf leaf = m_tree.leafOf(node);
       if (!before.is(leaf)) addLeaf(cell, leaf);
     }
   }
@@ -153,7 +174,7 @@ class Comparison {
       if (!mayDiffer(cell.child(i))) continue;
       const Before was = wasInner ? before.child(i) : Before();
       if (isInner(child) ? was.isNode() : !child && was.kind == Before::Kind::None) continue;
-      part.leaves[i] = leafOf(child);
+      part.leaves[i] = m_tree.leafOf(child);
       const bool isSame = !isInner(child) && was.is(part.leaves[i]);
       part.mask |= static_cast<std::uint8_t>(!isSame << i);
     }
@@ -163,12 +184,10 @@ class Comparison {
         compareOctet(child, cell.child(i), wasInner ? before.child(i) : Before(), step);
   }
 
-  const SemanticOcTree& m_map;
-  const Abstraction& m_abstraction;
-  const StreamTree& m_before;
+  Tree m_tree;
+  int m_rootDepth;
   Steps* m_steps;
   const ChangedCells* m_changed;
-  int m_rootDepth;
   PartList& m_parts;
 };
 
@@ -203,7 +222,9 @@ TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before) {
   // Also of what rounding alone expands.
   result.alphas.push_back(abstraction.options().weights.alpha);
   result.ties.push_back(result.alphas.back());
-  Comparison(map, abstraction, before, &steps, nullptr, result.parts).run();
+  Comparison(CompressedMap{map, abstraction}, abstraction.rootDepth(), &steps, nullptr,
+             result.parts)
+      .run(map.root(), before.root());
   result.parts.sort();
   return result;
 }
@@ -211,64 +232,16 @@ TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before) {
 TreeParts unorderedPartsOfChange(SemanticOcTree& map, const StreamTree& before,
                                  const ChangedCells* changed) {
   TreeParts result;
-  Comparison(map, Abstraction(map), before, nullptr, changed, result.parts).run();
+  const Abstraction abstraction(map);
+  Comparison(CompressedMap{map, abstraction}, abstraction.rootDepth(), nullptr, changed,
+             result.parts)
+      .run(map.root(), before.root());
   return result;
 }
 
-namespace {
-
-class Telling {
- public:
-  Telling(int rootDepth, PartList& parts) : m_rootDepth(rootDepth), m_parts(parts) {}
-
-  /** What is said of a node that is no octet's child, or lies at the roots. */
-  void tell(const Node& node, const CellPath& cell) {
-    if (!node) return;
-    if (node.isLeaf() || cell.depth == m_rootDepth) {
-      TreePart part;
-      part.cell = cell;
-      part.leaves[0] = leafOrPlace(node);
-      m_parts.add(part, 0, true);
-    }
-    if (node.isLeaf()) return;
-    if (cell.depth == m_rootDepth) return tellBelow(node, cell);
-    for (int i = 0; i < 8; ++i) tell(node.child(i), cell.child(i));
-  }
-
- private:
-  /** Where an inner node will be there is any leaf before; the last one again takes least. */
-  const StreamLeaf& leafOrPlace(const Node& node) {
-    if (node.isLeaf()) m_last = leafOf(node);
-    return m_last;
-  }
-
-  void tellBelow(const Node& inner, const CellPath& cell) {
-    TreePart part;
-    part.cell = cell;
-    part.isOctet = true;
-    part.mask = 0;
-    for (int i = 0; i < 8; ++i) {
-      const Node child = inner.child(i);
-      if (!child) continue;
-      part.leaves[i] = leafOrPlace(child);
-      part.mask |= static_cast<std::uint8_t>(1u << i);
-    }
-    m_parts.add(part, 0, true);
-    for (int i = 0; i < 8; ++i)
-      if (const Node child = inner.child(i); child && !child.isLeaf())
-        tellBelow(child, cell.child(i));
-  }
-
-  int m_rootDepth;
-  PartList& m_parts;
-  StreamLeaf m_last{{}, 0, StreamLeaf::Kind::Plain};
-};
-
-}  // namespace
-
 TreeParts partsOf(const StreamTree& tree, int rootDepth) {
   TreeParts result;
-  Telling(rootDepth, result.parts).tell(tree.root(), CellPath());
+  Comparison(ToldTree(), rootDepth, nullptr, nullptr, result.parts).run(tree.root(), {});
   return result;
 }
 

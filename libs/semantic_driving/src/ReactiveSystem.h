@@ -37,7 +37,7 @@ constexpr std::size_t kHolonomicFactors = MSO_MRPT_AT_LEAST(2, 14, 3) ? 8 : 7;
 /** Appends zeros, which weigh nothing, to lists of the seven factors that all releases have. */
 void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t factors);
 
-/** MRPT's navigator for a shape that is the same at all heights, or made of slices; ready to run.
+/** MRPT's navigator, ready to run.
  * \param tables folder of the tables that MRPT makes
  * \throw std::exception the file is missing, or what MRPT does not like about it. */
 std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(

@@ -31,14 +31,6 @@ class ObstacleFinder {
            m_planner.order().rank(surface->classId) == colored_graph::kForbidden;
   }
 
-  /** f(k) for the heights in voxels (1: on the ground) where an obstacle of the column is. */
-  template <class F>
-  void forHeights(semantic_planning::Column c, int z, const semantic_planning::Surface* surface,
-                  F f) const {
-    for (int k = surface ? 1 : m_ground.step() + 1; k <= m_height; ++k)
-      if (surface || m_ground.isOccupied(c, z + k, z + k)) f(k);
-  }
-
  private:
   const semantic_planning::SemanticPlanner& m_planner;
   const semantic_planning::Ground& m_ground;
@@ -71,7 +63,6 @@ class Surroundings {
   }
   /** Key of the ground's height there, or that leads there. \param c contained */
   int height(semantic_planning::Column c) const { return m_heights[m_columns.indexOf(c)]; }
-  const ColumnRectangle& columns() const { return m_columns; }
 
   /** f(column, key of the ground's height, surface there or null) */
   template <class F>

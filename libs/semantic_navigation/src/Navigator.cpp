@@ -61,13 +61,9 @@ NavigatorOptions completed(NavigatorOptions options, double voxelSize) {
   return options;
 }
 
-/** Where leaves of the compressed tree are obstacles, it keeps what tells these from air;
- * everywhere that would be too many leaves. */
 SemanticPlanner plannerOn(semantic_octree::SemanticOcTree& map,
                           const colored_graph::ClassOrder& order, const NavigatorOptions& options) {
-  const bool keepsObstacles = options.compressedObstacles && options.focus.isOn();
-  setAbstraction(map, semantic_planning::abstractionFor(order, tree_abstraction::kPlanningAlpha,
-                                                        keepsObstacles));
+  setAbstraction(map, semantic_planning::abstractionFor(order));
   return SemanticPlanner(map, order, options.planner);
 }
 
@@ -149,7 +145,6 @@ Navigator::Navigator(Mapper& mapper, const colored_graph::ClassOrder& order,
       m_leaves(mapper.map()),
       m_controller(m_options.drive, reactiveOf(m_options)),
       m_movers(m_options.movers, mapper.map().classes()),
-      m_fineUntil(kNever),
       m_mappedAt(kNever) {
   m_mapper.setMovers(m_movers.isMover());
   m_controller.setClassSpeeds(m_options.drive.classSpeeds(order));
@@ -221,7 +216,7 @@ void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
     return finish();
   }
   const double drivenMeanwhile = m_options.drive.maxSpeed * m_options.mappingLatency;
-  m_before = knownObstacles(m_options.obstacleRadius() + drivenMeanwhile, seconds);
+  m_before = knownObstacles(m_options.obstacleRadius() + drivenMeanwhile);
   m_roomBefore = knownRoom(kRoom + drivenMeanwhile);
   m_beforeAt = m_state.pose;
   m_inserting = std::async(std::launch::async, std::move(fillMap));
@@ -311,7 +306,7 @@ DriveCommand Navigator::step(double seconds) {
   if (m_guidesNext && mayGuide()) guide(seconds);
   ThreadClock clock;
   const Movers movers = m_movers.at(seconds);
-  ObstaclePoints around = obstacles(seconds);
+  ObstaclePoints around = obstacles();
   addStanding(movers, m_state.pose, around);
   note("obstacles", clock.lap());
   ObstaclePoints room;
@@ -361,21 +356,11 @@ void Navigator::chooseView() {
   m_guide.emplace(m_options.guide, m_planner, next->pose);
 }
 
-/** Cells of the compressed tree are in the way as a whole. Where the robot stands before them the
- * voxels of the full tree count, for as long as it takes to get by. */
-bool Navigator::wantsFineObstacles(double seconds) {
-  constexpr double kFor = 5;  // s
-  if (m_controller.stoppedFor(seconds) >= m_options.guide.patience) m_fineUntil = seconds + kFor;
-  return !m_options.compressedObstacles || seconds < m_fineUntil;
-}
-
 /** What of the map is in the way, in the robot's frame. */
-ObstaclePoints Navigator::knownObstacles(double radius, double seconds) {
+ObstaclePoints Navigator::knownObstacles(double radius) const {
   ObstacleOptions options = m_guide ? m_guide->obstacles() : ObstacleOptions();
   options.radius = radius;
-  if (wantsFineObstacles(seconds)) return senseObstacles(m_planner, m_state.pose, m_z, options);
-  return senseCompressedObstacles(m_planner, Abstraction(m_mapper.map()), m_state.pose, m_z,
-                                  options);
+  return senseObstacles(m_planner, m_state.pose, m_z, options);
 }
 
 /** Obstacles, and what is not known to be ground. */
@@ -387,10 +372,10 @@ ObstaclePoints Navigator::knownRoom(double radius) const {
 }
 
 /** The same; while a scan is inserted, as it was known before. */
-ObstaclePoints Navigator::obstacles(double seconds) {
+ObstaclePoints Navigator::obstacles() const {
   const double radius = m_options.obstacleRadius();
   return isInserting() ? seenFrom(m_before, m_beforeAt, m_state.pose, radius)
-                       : knownObstacles(radius, seconds);
+                       : knownObstacles(radius);
 }
 
 Navigator::Status Navigator::status() const {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 namespace synthetic_world {
 namespace {
@@ -26,29 +24,15 @@ double turnBetween(const Eigen::Vector2d& in, const Eigen::Vector2d& out) {
 Rounding roundCorner(const Eigen::Vector2d& in, const Eigen::Vector2d& out, double radius) {
   Rounding r;
   r.turn = turnBetween(in, out);
-  if (M_PI - std::abs(r.turn) < 1e-6)
-    throw std::invalid_argument("curve: a corner turns back on itself");
   const double shorterHalf = 0.5 * std::min(in.norm(), out.norm());
   r.tangent = std::min(radius * std::tan(std::abs(r.turn) / 2), shorterHalf);
   return r;
-}
-
-void check(const std::vector<Eigen::Vector2d>& corners, double radius, bool closed) {
-  const std::size_t least = closed ? 3 : 2;
-  if (corners.size() < least)
-    throw std::invalid_argument("curve: " + std::to_string(corners.size()) + " corners, at least " +
-                                std::to_string(least) + " expected");
-  if (!(radius > 0)) throw std::invalid_argument("curve: the radius must be positive");
-  for (std::size_t i = 0; i + (closed ? 0 : 1) < corners.size(); ++i)
-    if (corners[i] == corners[(i + 1) % corners.size()])
-      throw std::invalid_argument("curve: corner " + std::to_string(i) + " equals the next one");
 }
 
 }  // namespace
 
 Curve::Curve(const std::vector<Eigen::Vector2d>& corners, double radius, bool closed)
     : m_closed(closed) {
-  check(corners, radius, closed);
   build(corners, radius);
 }
 
@@ -118,7 +102,6 @@ Curve Curve::parallel(double left) const {
   result.m_closed = m_closed;
   for (const Piece& p : m_pieces) {
     const double stretch = 1 - p.curvature * left;
-    if (stretch <= 0) throw std::invalid_argument("curve: too narrow for this parallel");
     const Eigen::Vector2d normal(-std::sin(p.heading), std::cos(p.heading));
     result.append(p.start + left * normal, p.heading, p.length * stretch, p.curvature / stretch);
   }
@@ -149,19 +132,6 @@ bool edgeSeparates(const Polygon& a, const Polygon& b) {
 }
 
 }  // namespace
-
-void requireConvex(const Polygon& polygon, const char* what) {
-  bool convex = polygon.size() >= 3;
-  double turned = 0;
-  for (std::size_t i = 0; convex && i < polygon.size(); ++i) {
-    const Eigen::Vector2d in = edge(polygon, i), out = edge(polygon, (i + 1) % polygon.size());
-    convex = cross(in, out) > 0;
-    turned += std::atan2(cross(in, out), in.dot(out));
-  }
-  if (!convex || turned > 2 * M_PI + 1e-6)
-    throw std::invalid_argument(std::string(what) +
-                                ": three or more corners, convex, counterclockwise expected");
-}
 
 Polygon rectangle(const Eigen::Vector2d& center, double yaw, double length, double width) {
   const double l = length / 2, w = width / 2;

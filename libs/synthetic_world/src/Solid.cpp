@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace synthetic_world {
 namespace {
@@ -173,10 +172,6 @@ Eigen::Vector3d lifted(const Eigen::Vector2d& p, double z) { return {p.x(), p.y(
 
 Polyhedron::Polyhedron(const Polygon& bottom, const Polygon& top, double low, double high)
     : m_outline(bottom), m_low(low), m_high(high) {
-  requireConvex(bottom, "polyhedron");
-  if (top.size() != bottom.size())
-    throw std::invalid_argument("polyhedron: top and bottom differ in their number of corners");
-  if (!(low < high)) throw std::invalid_argument("polyhedron: its top is not above its bottom");
   for (std::size_t i = 0; i < bottom.size(); ++i) {
     const std::size_t j = (i + 1) % bottom.size();
     addSide(lifted(bottom[i], low), lifted(bottom[j], low), lifted(top[i], high));
@@ -187,7 +182,6 @@ Polyhedron::Polyhedron(const Polygon& bottom, const Polygon& top, double low, do
 
 Polyhedron Polyhedron::gable(const Eigen::Vector2d& center, double yaw, double length, double width,
                              double low, double high) {
-  if (!(low < high)) throw std::invalid_argument("gable: its ridge is not above its eaves");
   Polyhedron p;
   p.m_outline = rectangle(center, yaw, length, width);
   p.m_low = low, p.m_high = high;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 namespace synthetic_world {
 
@@ -37,16 +35,6 @@ void SolidIndex::insert(const Solid& solid, std::uint32_t number) {
       cell.top = std::max(cell.top, solid.high());
     }
   m_highest = std::max(m_highest, solid.high());
-}
-
-void Footprint::validate() const {
-  requireConvex(outline, "footprint: outline");
-  if (!(clearance >= 0))
-    throw std::invalid_argument("footprint: clearance is " + std::to_string(clearance) +
-                                ", 0 m or more expected");
-  if (!(height > clearance))
-    throw std::invalid_argument("footprint: height is " + std::to_string(height) +
-                                ", more than clearance expected");
 }
 
 World::World(Terrain terrain, GroundCover cover, Solids solids)
@@ -105,7 +93,6 @@ class TruthSearch {
 }  // namespace
 
 PointTruth World::at(const Eigen::Vector3d& p, double tolerance) const {
-  if (!(tolerance >= 0)) throw std::invalid_argument("world: a tolerance of 0 m or more expected");
   TruthSearch search(tolerance);
   for (const Solid& s : m_movables) search.consider(s.signedDistance(p), &s);
   if (m_terrain.contains(p.x(), p.y()))
@@ -164,7 +151,6 @@ int GroundCover::cellOf(double coordinate) const {
 }
 
 void GroundCover::paint(const Stroke& stroke) {
-  if (!(stroke.radius > 0)) throw std::invalid_argument("ground cover: a stroke without width");
   const Eigen::Vector2d end = stroke.start + stroke.length * stroke.direction;
   const Eigen::Vector2d low = stroke.start.cwiseMin(end).array() - stroke.radius;
   const Eigen::Vector2d high = stroke.start.cwiseMax(end).array() + stroke.radius;
@@ -185,7 +171,6 @@ void GroundCover::paintStroke(ClassId id, const Eigen::Vector2d& a, const Eigen:
 void GroundCover::paintBand(ClassId id, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                             double width) {
   const double length = (b - a).norm();
-  if (!(length > 0)) throw std::invalid_argument("ground cover: a band without length");
   paint({a, (b - a) / length, length, width / 2, false, id});
 }
 
@@ -204,19 +189,6 @@ ClassId GroundCover::at(double x, double y) const {
 }
 
 namespace {
-
-void check(int halfExtent, const std::vector<Terrain::Wave>& waves) {
-  if (halfExtent < 1 || halfExtent > 1000)
-    throw std::invalid_argument("terrain: halfExtent is " + std::to_string(halfExtent) +
-                                ", 1 to 1000 m expected");
-  for (const Terrain::Wave& w : waves) {
-    if (!std::isfinite(w.amplitude) || !std::isfinite(w.direction) || !std::isfinite(w.phase))
-      throw std::invalid_argument("terrain: a wave is not finite");
-    if (!(w.length >= 8))
-      throw std::invalid_argument("terrain: a wave of " + std::to_string(w.length) +
-                                  " m, 8 m or more expected");
-  }
-}
 
 double waveHeight(const Terrain::Wave& w, double x, double y) {
   const double along = x * std::cos(w.direction) + y * std::sin(w.direction);
@@ -238,7 +210,6 @@ std::optional<double> firstRoot(double a, double b, double c, double from, doubl
 
 Terrain::Terrain(int halfExtent, const std::vector<Wave>& waves)
     : m_halfExtent(halfExtent), m_width(2 * halfExtent + 1) {
-  check(halfExtent, waves);
   m_nodes.reserve(static_cast<std::size_t>(m_width) * m_width);
   for (int ny = 0; ny < m_width; ++ny)
     for (int nx = 0; nx < m_width; ++nx) {

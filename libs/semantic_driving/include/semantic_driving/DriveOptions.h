@@ -67,7 +67,5 @@ struct DriveCommand {
 
 /** Obstacles as senseObstacles() gives them: points in the vehicle's frame, meters. */
 using ObstaclePoints = std::vector<Eigen::Vector2d>;
-/** Obstacles with heights above the ground, as senseObstacles3() gives them. */
-using ObstaclePoints3 = std::vector<Eigen::Vector3d>;
 
 }  // namespace semantic_driving

@@ -1,5 +1,4 @@
 #pragma once
-#include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/DriveOptions.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
@@ -26,27 +25,9 @@ ObstaclePoints senseObstacles(const semantic_planning::SemanticPlanner& planner,
                               const mrpt::math::TPose2D& pose, double z,
                               const ObstacleOptions& options = {});
 
-/** As senseObstacles(), with heights above the ground, meters: centers of the voxels that are in
- * the way, for a vehicle that is not as wide at all heights. Where the ground itself is an
- * obstacle, there is one at each height. */
-ObstaclePoints3 senseObstacles3(const semantic_planning::SemanticPlanner& planner,
-                                const mrpt::math::TPose2D& pose, double z,
-                                const ObstacleOptions& options = {});
-
 /** Obstacles in the frame of a vehicle at `from`, in that of one at `to`: those within `radius`
  * meters of it. For a vehicle that drove on while its map was not to be asked. */
 ObstaclePoints seenFrom(const ObstaclePoints& obstacles, const mrpt::math::TPose2D& from,
                         const mrpt::math::TPose2D& to, double radius);
-
-/** As senseObstacles(), from the leaves of the compressed tree: an occupied leaf is an obstacle as
- * a whole, so that nothing is missed, but up to a leaf's edge too much is in the way. How large
- * leaves are is a matter of the abstraction: one that does not tell obstacles from air, as
- * semantic_planning::abstractionFor(), has leaves with much air around them.
- * \param compressed of the planner's map
- * \return centers of the columns at the border of what the leaves cover */
-ObstaclePoints senseCompressedObstacles(const semantic_planning::SemanticPlanner& planner,
-                                        const semantic_octree::Abstraction& compressed,
-                                        const mrpt::math::TPose2D& pose, double z,
-                                        const ObstacleOptions& options = {});
 
 }  // namespace semantic_driving

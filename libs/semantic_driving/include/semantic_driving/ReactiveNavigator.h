@@ -8,25 +8,16 @@
 
 namespace semantic_driving {
 
-/** MRPT's CReactiveNavigationSystem, or CReactiveNavigationSystem3D, step by step: waypoints and
+/** MRPT's CReactiveNavigationSystem, step by step: waypoints and
  * obstacles go in, a command comes out. It drives forward only.
  *
  * MRPT takes the time from mrpt::Clock: let it tell the time of a simulation
  * (mrpt::Clock::setActiveClock()), if there is one. */
 class ReactiveNavigator {
  public:
-  /** A part of a vehicle's shape that is the same from bottom to top. */
-  struct Slice {
-    double height = 0;  ///< meters
-    semantic_planning::Footprint outline;
-  };
   struct Options {
     std::filesystem::path config;  ///< MRPT's .ini, see config/reactive
     semantic_planning::Footprint footprint;
-    /** From the ground up, if the shape is not the same at all heights: in place of the footprint,
-     * by CReactiveNavigationSystem3D. (Jaimez, Gonzalez-Jimenez and Blanco, "Efficient reactive
-     * navigation with exact collision determination for 3D robot shapes", 2015.) */
-    std::vector<Slice> slices;
     double margin = 0.1;  ///< kept free around the footprint, meters
     /** Speed and least radius of the trajectories, whatever the file says. */
     double maxSpeed = 1, turningRadius = 0.8;  ///< m/s, meters
@@ -47,11 +38,8 @@ class ReactiveNavigator {
   void setWaypoints(const std::vector<semantic_planning::PathPoint>& waypoints, double reach);
   void cancel();
 
-  /** \param obstacles in the way of all slices
-   * \param seconds of the clock that runs while navigating */
+  /** \param seconds of the clock that runs while navigating */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double seconds);
-  /** \param obstacles in the way of the slices at their heights */
-  DriveCommand step(const DriveState& state, const ObstaclePoints3& obstacles, double seconds);
   /** After the last step. */
   Status status() const;
 

@@ -16,11 +16,11 @@ namespace semantic_driving {
  * of your own, derive from it or tell it what your sensors say. */
 class RobotInterface : public mrpt::nav::CRobot2NavInterface {
  public:
-  DriveState state;           ///< in the map's frame
-  ObstaclePoints3 obstacles;  ///< in the robot's frame, meters
-  DriveCommand command;       ///< what the navigator wants; it stands until it says otherwise
-  double seconds = 0;         ///< of the clock that runs while navigating
-  bool blocked = false;       ///< the navigator finds no way, or gave up
+  DriveState state;          ///< in the map's frame
+  ObstaclePoints obstacles;  ///< in the robot's frame, meters
+  DriveCommand command;      ///< what the navigator wants; it stands until it says otherwise
+  double seconds = 0;        ///< of the clock that runs while navigating
+  bool blocked = false;      ///< the navigator finds no way, or gave up
 
 #if MSO_MRPT_AT_LEAST(3, 0, 0)
   std::optional<CurrentPoseAndSpeeds> getCurrentPoseAndSpeeds() override {
@@ -51,7 +51,8 @@ class RobotInterface : public mrpt::nav::CRobot2NavInterface {
   bool senseObstacles(mrpt::maps::CSimplePointsMap& points,
                       mrpt::system::TTimeStamp& time) override {
     points.clear();
-    for (const Eigen::Vector3d& o : obstacles) points.insertPoint(o.x(), o.y(), o.z());
+    constexpr double kHeight = 0.5;  // m; whatever: the shape is the same at all heights
+    for (const Eigen::Vector2d& o : obstacles) points.insertPoint(o.x(), o.y(), kHeight);
     time = mrpt::Clock::now();
     return true;
   }

@@ -22,7 +22,6 @@ struct NavigatorOptions {
   semantic_driving::MoverOptions movers;
   semantic_driving::FocusOptions focus;
   semantic_driving::ExploreOptions explore;  ///< its sensor has to be set
-  bool compressedObstacles = false;          ///< the compressed tree's leaves are obstacles
   /** Seconds from a scan until the map has it. Above 0 a thread inserts it meanwhile, and is waited
    * for if it takes longer; the robot drives on by what was known before. */
   double mappingLatency = 0;
@@ -133,10 +132,9 @@ class Navigator {
   void guide(double seconds);
   void chooseView();
   bool isTimeToChoose() const;
-  bool wantsFineObstacles(double seconds);
-  semantic_driving::ObstaclePoints knownObstacles(double radius, double seconds);
+  semantic_driving::ObstaclePoints knownObstacles(double radius) const;
   semantic_driving::ObstaclePoints knownRoom(double radius) const;
-  semantic_driving::ObstaclePoints obstacles(double seconds);
+  semantic_driving::ObstaclePoints obstacles() const;
   void note(const std::string& stage, double milliseconds) const;
 
   NavigatorOptions m_options;
@@ -157,7 +155,7 @@ class Navigator {
   bool m_stands = false;                      ///< the map has what the robot stands on
   bool m_guidesNext = false;                  ///< as soon as the map has what was seen
   bool m_restsFirst = false;                  ///< before it looks for a way to a new goal
-  double m_fineUntil, m_mappedAt;             ///< seconds
+  double m_mappedAt;                          ///< seconds
   double m_insertingFrom = 0;                 ///< when the scan that is being inserted was taken
   semantic_driving::ObstaclePoints m_before;  ///< known without that one, and the robot's pose then
   semantic_driving::ObstaclePoints m_roomBefore;

@@ -68,8 +68,7 @@ ClassOrder loadClassOrder(const std::filesystem::path& file, const ClassTable& c
   }
 }
 
-semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
-                                                   double alpha, bool obstacles) {
+semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order) {
   std::vector<std::vector<int>> groups(order.ranks());
   for (int id = 1; id < order.classes(); ++id) {  // 0 would be free space
     const colored_graph::Rank rank = order.rank(static_cast<colored_graph::GraphClass>(id));
@@ -81,8 +80,7 @@ semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrd
   semantic_octree::AbstractionOptions options;
   options.blockSize = 3.2;
   options.weights.terms = {ranks};
-  if (obstacles) options.weights.terms.push_back(tree_abstraction::relevant("obstacles", 1, {0}));
-  options.weights.alpha = alpha;
+  options.weights.alpha = tree_abstraction::kPlanningAlpha;
   return options;
 }
 

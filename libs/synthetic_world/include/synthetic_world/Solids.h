@@ -49,10 +49,6 @@ Color naturalColor(ClassId id);
 /** Corners of a convex polygon, counterclockwise. */
 using Polygon = std::vector<Eigen::Vector2d>;
 
-/** \throw std::invalid_argument fewer than three corners, or not convex and counterclockwise;
- * `what` names the polygon in the message. */
-void requireConvex(const Polygon& polygon, const char* what);
-
 /** The rectangle of this length (along the yaw's direction) and width around a center. */
 Polygon rectangle(const Eigen::Vector2d& center, double yaw, double length, double width);
 

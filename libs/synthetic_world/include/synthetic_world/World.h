@@ -20,9 +20,8 @@ class Terrain {
   };
   static constexpr double kCell = 1.0;  // meters between nodes
 
-  /** \param halfExtent The ground reaches from -halfExtent to +halfExtent in x and y, meters.
-   * \throw std::invalid_argument halfExtent is not a whole number of meters from 1 to 1000, or a
-   *   wave is not finite or shorter than 8 m (the grid would not follow it). */
+  /** \param halfExtent The ground reaches from -halfExtent to +halfExtent in x and y: 1 to 1000 m
+   * \param waves finite, 8 m or longer (the grid would not follow shorter ones) */
   Terrain(int halfExtent, const std::vector<Wave>& waves);
 
   double halfExtent() const { return m_halfExtent; }
@@ -62,9 +61,8 @@ class Curve {
  public:
   /** Straight lines between the corners, each corner rounded.
    * \param radius Of the roundings, meters; less where an edge is too short for it.
-   * \param closed The last corner leads back to the first.
-   * \throw std::invalid_argument fewer than two corners (three if closed), two equal neighbors,
-   *   a corner that turns back on itself, or a radius that is not positive. */
+   * \param corners Two or more (three if closed), none equal to the next, none that turns back on
+   *   itself. \param closed The last corner leads back to the first. */
   Curve(const std::vector<Eigen::Vector2d>& corners, double radius, bool closed = false);
 
   double length() const { return m_length; }
@@ -79,8 +77,7 @@ class Curve {
   /** Point at s, moved by `left` meters to the left of the direction of travel. */
   Eigen::Vector2d beside(double s, double left) const;
 
-  /** The parallel curve at `left` meters.
-   * \throw std::invalid_argument the arcs of this curve are too narrow for it. */
+  /** The parallel curve at `left` meters; the arcs of this curve are wide enough for it. */
   Curve parallel(double left) const;
 
  private:
@@ -188,9 +185,6 @@ struct Footprint {
   Polygon outline = rectangle({0, 0}, 0, 0.9, 0.6);  // robot frame, meters
   double clearance = 0.1;                            // m; lower things are driven over
   double height = 1.2;                               // m
-
-  /** \throw std::invalid_argument naming the field. */
-  void validate() const;
 };
 
 /** A place: ground with classes, and solids that stand on it. Frame: x, y, z up, meters.

@@ -28,12 +28,8 @@ colored_graph::ClassOrder loadClassOrder(const std::filesystem::path& file,
                                          const semantic_types::ClassTable& classes);
 
 /** A compressed tree for planning with this order (over the map's class ids, 0 = unknown ground):
- * it keeps what tells the ranks apart, each from the others and from all that is forbidden.
- * \param alpha price of detail, see AbstractionWeights::alpha \param obstacles keeps what tells
- * these from air, too */
-semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order,
-                                                   double alpha = tree_abstraction::kPlanningAlpha,
-                                                   bool obstacles = false);
+ * it keeps what tells the ranks apart, each from the others and from all that is forbidden. */
+semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order);
 
 /** One that keeps what a solution of a file of weights says (see semantic_octree::loadWeights); its
  * alpha is kPlanningAlpha if the file says none. \param solution its name; empty: the first
