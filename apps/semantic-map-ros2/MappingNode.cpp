@@ -26,12 +26,6 @@ constexpr std::size_t kMostLatencies = 10'000;
 constexpr std::size_t kQueueBytes = 500'000'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
-/** x, y and heading of a pose. */
-Isometry3d upright(const Isometry3d& T) {
-  const auto p = planar(T);
-  return Eigen::Translation3d(p.x, p.y, 0) * Eigen::AngleAxisd(p.phi, Eigen::Vector3d::UnitZ());
-}
-
 bool passed(steady_clock::time_point& since, steady_clock::duration period) {
   const auto now = steady_clock::now();
   if (now - since < period) return false;
@@ -142,7 +136,6 @@ void MappingNode::onGoal(const ros2::PoseStamped& message) {
   if (m_T_world_robot) m_driving->plan(m_mapper.T_map_odometry() * *m_T_world_robot, m_stamp);
 }
 
-/** RViz says x, y and heading; height and tilt stay. */
 void MappingNode::onInitialPose(const ros2::PoseWithCovarianceStamped& message) {
   if (!m_parameters.node.slam)
     return m_complaints.say("an initial pose came, but without slam /tf says where the robot is");
@@ -154,10 +147,7 @@ void MappingNode::onInitialPose(const ros2::PoseWithCovarianceStamped& message) 
   if (!T_odometry_robot.T_target_source)
     return m_complaints.say("an initial pose came before odometry", T_odometry_robot.problem);
   if (m_driving && m_driving->navigator()) m_driving->navigator()->mapper();  // waits
-  const Isometry3d T_odometry = *T_odometry_robot.T_target_source;
-  const Isometry3d T_before = m_mapper.T_map_odometry() * T_odometry;
-  const Isometry3d T_map_now = upright(*T_map_robot) * upright(T_before).inverse() * T_before;
-  m_mapper.relocalize(T_map_now * T_odometry.inverse());
+  relocalize(m_mapper, *T_map_robot, *T_odometry_robot.T_target_source);
   m_correctedAt.reset();
   notes() << "The robot is where an initial pose has it" << std::endl;
 }
