@@ -60,6 +60,11 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
                            const std::lock_guard<std::mutex> lock(m_mutex);
                            m_newPose = message;
                          }),
+      m_hearsExploring(m_node, "~/explore", {true, false, 1},
+                       [this](auto message) {
+                         const std::lock_guard<std::mutex> lock(m_mutex);
+                         m_newExploring = message;
+                       }),
       m_hearsSave(m_node, "~/save", {true, false, 1}, [this](auto) {
         const std::lock_guard<std::mutex> lock(m_mutex);
         m_isToSave = true;
@@ -111,21 +116,29 @@ void MappingNode::look() {
 void MappingNode::hear() {
   std::shared_ptr<const ros2::PoseStamped> goal;
   std::shared_ptr<const ros2::PoseWithCovarianceStamped> pose;
+  std::shared_ptr<const ros2::Bool> exploring;
   bool isToSave;
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     goal = std::exchange(m_newGoal, nullptr);
     pose = std::exchange(m_newPose, nullptr);
+    exploring = std::exchange(m_newExploring, nullptr);
     isToSave = std::exchange(m_isToSave, false);
   }
   if (goal) onGoal(*goal);
   if (pose) onInitialPose(*pose);
+  if (exploring) onExploring(exploring->data);
   if (isToSave) try {
       if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
       m_save();
     } catch (const std::exception& e) {
       m_complaints.say(strict_files::messageOf(e));
     }
+}
+
+void MappingNode::onExploring(bool isToExplore) {
+  const std::string problem = m_driving ? m_driving->explore(isToExplore) : "there is no order";
+  if (!problem.empty()) m_complaints.say("it cannot explore: " + problem);
 }
 
 void MappingNode::onGoal(const ros2::PoseStamped& message) {
@@ -210,6 +223,7 @@ void MappingNode::insert(const WaitingScan& scan, const Placed& place) {
   if (auto* navigator = m_driving ? m_driving->navigator() : nullptr) {
     navigator->update(*robotAt(scan.stamp));
     navigator->see(seen, ros2::secondsOf(scan.stamp));
+    m_driving->learnSensor(seen[0]);
   } else {
     const double seconds = m_seconds + m_scanClock.secondsUntil(stamp);
     m_mapper.insert(seen, m_mapper.locate(seen, place.first), seconds);
