@@ -11,6 +11,7 @@
 
 #include "StandardOutput.h"
 #include "Transforms.h"
+#include "measuring/Measuring.h"
 
 namespace semantic_map_ros2 {
 
@@ -149,6 +150,10 @@ Driving::Driving(ros2::Node& node, const Parameters& parameters, semantic_slam::
   if (!parameters.node.drive) return;
   m_navigator.emplace(mapper, order, parameters.navigation);
   m_writesCommand.emplace(node, "cmd_vel", ros2::Qos{true, false, 1});
+  m_exploring = parameters.navigation.explore;
+  m_exploring.sensor.range = parameters.insertion.scan.maxRange;
+  const auto& abstraction = parameters.abstraction;
+  if (abstraction.isSet()) m_weights = abstraction.forClasses(mapper.map().classes()).weights;
 }
 
 void Driving::setGoal(const TPose2D& goal) {
@@ -156,6 +161,47 @@ void Driving::setGoal(const TPose2D& goal) {
   if (m_navigator) return m_navigator->setGoal(goal);
   m_goal = goal;
   m_isNew = true;
+}
+
+std::string Driving::explore(bool isToExplore) {
+  if (!m_navigator) return "the robot does not drive";
+  if (m_solidAngle == 0) return "nothing was seen yet";
+  m_said.clear();
+  if (isToExplore)
+    m_navigator->explore(m_weights, m_exploring);
+  else
+    m_navigator->endExploring();
+  return {};
+}
+
+/** A shape with beams in equal steps, as many as points came, but no more than it takes to meet
+ * what is near: it is made once, and swept at each place. */
+void Driving::learnSensor(const semantic_slam::SensorScan& scan) {
+  constexpr double kDegrees = 180 / M_PI, kGap = 30, kMostBeams = 8000;
+  constexpr std::size_t kSome = 2000;  // points that are looked at
+  std::vector<double> up, around, ranges;
+  const auto& points = scan.cloud.points;
+  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kSome) {
+    const Eigen::Vector3d ray = scan.T_robot_sensor.linear() * points[i].cast<double>();
+    up.push_back(std::atan2(ray.z(), std::hypot(ray.x(), ray.y())) * kDegrees);
+    around.push_back(std::atan2(ray.y(), ray.x()) * kDegrees);
+    ranges.push_back(ray.norm());
+  }
+  if (up.empty()) return;
+  std::sort(around.begin(), around.end());
+  double gap = around.front() + 360 - around.back();
+  for (std::size_t i = 1; i < around.size(); ++i) gap = std::max(gap, around[i] - around[i - 1]);
+  const double width = gap < kGap ? 360 : 360 - gap;
+  const double lowest = measuring::quantile(up, 0.01), highest = measuring::quantile(up, 0.99);
+  const double span = std::max(1.0, highest - lowest);
+  if (width * span <= m_solidAngle) return;
+  m_solidAngle = width * span;
+  const double beams = std::min(kMostBeams, static_cast<double>(points.size()) * 360 / width);
+  const int rings = std::max(1, static_cast<int>(std::sqrt(beams * span / 360)));
+  double& range = m_exploring.sensor.range;
+  if (!(range > 0)) range = measuring::quantile(ranges, 0.99);
+  m_exploring.sensor = {range, lowest, highest, width, rings, static_cast<int>(beams) / rings};
+  m_exploring.sensorHeight = scan.T_robot_sensor.translation().z();
 }
 
 void Driving::plan(const Eigen::Isometry3d& T_map_robot, ros2::Stamp stamp) {
@@ -206,6 +252,7 @@ void Driving::sayStatus() {
   if (status == Status::Arrived) what = "the robot is there";
   if (status == Status::Nearest) what = "the robot is as near as it can: " + m_navigator->reason();
   if (status == Status::Unreachable) what = "the robot gave up: " + m_navigator->reason();
+  if (status == Status::Explored) what = "the robot explored; " + m_navigator->reason();
   if (!what.empty() && std::exchange(m_said, what) != what)
     notes() << "Goal: " << what << std::endl;
 }

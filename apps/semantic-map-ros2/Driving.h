@@ -71,6 +71,11 @@ class Driving {
   semantic_navigation::Navigator* navigator() { return m_navigator ? &*m_navigator : nullptr; }
   /** Map frame. */
   void setGoal(const mrpt::math::TPose2D& goal);
+  /** Looks around from now on by what the abstraction's weights ask for, without weights for the
+   * nearest border of what is known; or ends that. \return why it cannot, if so */
+  std::string explore(bool isToExplore);
+  /** Who explores looks by the sensor that sees most. */
+  void learnSensor(const semantic_slam::SensorScan& scan);
   /** The map changed: without `drive`, plans anew to the goal, if there is one. */
   void plan(const Eigen::Isometry3d& T_map_robot, ros2::Stamp stamp);
   /** Ten times a second, with `drive`. \param robot none: it is not known where it is, and stands
@@ -84,6 +89,9 @@ class Driving {
   void sayStatus();
 
   semantic_slam::Mapper& m_mapper;
+  std::optional<tree_abstraction::AbstractionWeights> m_weights;  ///< of what is explored for
+  semantic_driving::ExploreOptions m_exploring;
+  double m_solidAngle = 0;  ///< of its sensor; 0: nothing was seen yet
   colored_graph::ClassOrder m_order;
   semantic_planning::PlannerOptions m_options;
   std::string m_frame;

@@ -1,15 +1,11 @@
 #pragma once
-#include <semantic_octree/MapFollower.h>
-#include <semantic_octree/SemanticOcTree.h>
-
-#include <array>
 #include <cstdint>
 #include <map>
 #include <set>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
+#include "NodeMap.h"
 #include "ros2/Node.h"
 
 namespace semantic_map_ros2 {
@@ -26,19 +22,6 @@ class MapMessages {
 
  private:
   using ClassId = semantic_types::ClassId;
-  using Keys = std::array<int, 3>;
-  struct Voxel {
-    std::uint16_t x, y, z;
-    ClassId classId;
-    float probability;  ///< of the class; without one, of being occupied
-    /** In markers. */
-    bool looksLike(const Voxel& o) const {
-      return x == o.x && y == o.y && z == o.z && classId == o.classId;
-    }
-  };
-  void follow();
-  void read(const octomap::OcTreeKey& tile);
-  ros2::Point centerOf(const Voxel& voxel) const;
   void publishMarkers(ros2::Stamp stamp);
   void addMarkers(std::uint64_t block, const ros2::Header& header);
   void publishPoints(ros2::Stamp stamp);
@@ -46,10 +29,7 @@ class MapMessages {
 
   semantic_octree::SemanticOcTree& m_map;
   std::string m_frame;
-  semantic_octree::MapFollower m_follower;
-  std::unordered_map<std::uint64_t, std::vector<Voxel>> m_tiles;
-  /** Tiles by the block that they are in, of those that hold voxels. */
-  std::map<std::uint64_t, std::set<std::uint64_t>> m_blocks;
+  OccupiedVoxels m_voxels;
   std::set<std::uint64_t> m_changed;                   ///< blocks that markers do not show yet
   std::map<std::uint64_t, std::set<ClassId>> m_shown;  ///< by block
   std::vector<ros2::Marker> m_markers;                 ///< of a message that is made

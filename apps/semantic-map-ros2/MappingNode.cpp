@@ -26,12 +26,6 @@ constexpr std::size_t kMostLatencies = 10'000;
 constexpr std::size_t kQueueBytes = 500'000'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
-/** x, y and heading of a pose. */
-Isometry3d upright(const Isometry3d& T) {
-  const auto p = planar(T);
-  return Eigen::Translation3d(p.x, p.y, 0) * Eigen::AngleAxisd(p.phi, Eigen::Vector3d::UnitZ());
-}
-
 bool passed(steady_clock::time_point& since, steady_clock::duration period) {
   const auto now = steady_clock::now();
   if (now - since < period) return false;
@@ -66,6 +60,11 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
                            const std::lock_guard<std::mutex> lock(m_mutex);
                            m_newPose = message;
                          }),
+      m_hearsExploring(m_node, "~/explore", {true, false, 1},
+                       [this](auto message) {
+                         const std::lock_guard<std::mutex> lock(m_mutex);
+                         m_newExploring = message;
+                       }),
       m_hearsSave(m_node, "~/save", {true, false, 1}, [this](auto) {
         const std::lock_guard<std::mutex> lock(m_mutex);
         m_isToSave = true;
@@ -117,21 +116,29 @@ void MappingNode::look() {
 void MappingNode::hear() {
   std::shared_ptr<const ros2::PoseStamped> goal;
   std::shared_ptr<const ros2::PoseWithCovarianceStamped> pose;
+  std::shared_ptr<const ros2::Bool> exploring;
   bool isToSave;
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     goal = std::exchange(m_newGoal, nullptr);
     pose = std::exchange(m_newPose, nullptr);
+    exploring = std::exchange(m_newExploring, nullptr);
     isToSave = std::exchange(m_isToSave, false);
   }
   if (goal) onGoal(*goal);
   if (pose) onInitialPose(*pose);
+  if (exploring) onExploring(exploring->data);
   if (isToSave) try {
       if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
       m_save();
     } catch (const std::exception& e) {
       m_complaints.say(strict_files::messageOf(e));
     }
+}
+
+void MappingNode::onExploring(bool isToExplore) {
+  const std::string problem = m_driving ? m_driving->explore(isToExplore) : "there is no order";
+  if (!problem.empty()) m_complaints.say("it cannot explore: " + problem);
 }
 
 void MappingNode::onGoal(const ros2::PoseStamped& message) {
@@ -142,7 +149,6 @@ void MappingNode::onGoal(const ros2::PoseStamped& message) {
   if (m_T_world_robot) m_driving->plan(m_mapper.T_map_odometry() * *m_T_world_robot, m_stamp);
 }
 
-/** RViz says x, y and heading; height and tilt stay. */
 void MappingNode::onInitialPose(const ros2::PoseWithCovarianceStamped& message) {
   if (!m_parameters.node.slam)
     return m_complaints.say("an initial pose came, but without slam /tf says where the robot is");
@@ -154,10 +160,7 @@ void MappingNode::onInitialPose(const ros2::PoseWithCovarianceStamped& message) 
   if (!T_odometry_robot.T_target_source)
     return m_complaints.say("an initial pose came before odometry", T_odometry_robot.problem);
   if (m_driving && m_driving->navigator()) m_driving->navigator()->mapper();  // waits
-  const Isometry3d T_odometry = *T_odometry_robot.T_target_source;
-  const Isometry3d T_before = m_mapper.T_map_odometry() * T_odometry;
-  const Isometry3d T_map_now = upright(*T_map_robot) * upright(T_before).inverse() * T_before;
-  m_mapper.relocalize(T_map_now * T_odometry.inverse());
+  relocalize(m_mapper, *T_map_robot, *T_odometry_robot.T_target_source);
   m_correctedAt.reset();
   notes() << "The robot is where an initial pose has it" << std::endl;
 }
@@ -220,6 +223,7 @@ void MappingNode::insert(const WaitingScan& scan, const Placed& place) {
   if (auto* navigator = m_driving ? m_driving->navigator() : nullptr) {
     navigator->update(*robotAt(scan.stamp));
     navigator->see(seen, ros2::secondsOf(scan.stamp));
+    m_driving->learnSensor(seen[0]);
   } else {
     const double seconds = m_seconds + m_scanClock.secondsUntil(stamp);
     m_mapper.insert(seen, m_mapper.locate(seen, place.first), seconds);

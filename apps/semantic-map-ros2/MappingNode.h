@@ -42,6 +42,7 @@ class MappingNode {
   void look();
   void publish();
   void publishCorrection();
+  void onExploring(bool isToExplore);
   void onGoal(const ros2::PoseStamped& message);
   void onInitialPose(const ros2::PoseWithCovarianceStamped& message);
   std::optional<Eigen::Isometry3d> inMap(const ros2::Header& header,
@@ -78,10 +79,12 @@ class MappingNode {
   std::mutex m_mutex;  ///< of what DDS's threads leave here
   std::shared_ptr<const ros2::PoseStamped> m_newGoal;
   std::shared_ptr<const ros2::PoseWithCovarianceStamped> m_newPose;
+  std::shared_ptr<const ros2::Bool> m_newExploring;
   bool m_isToSave = false;
   Sensors m_sensors;
   ros2::Subscription<ros2::PoseStamped> m_hearsGoal;
   ros2::Subscription<ros2::PoseWithCovarianceStamped> m_hearsInitialPose;
+  ros2::Subscription<ros2::Bool> m_hearsExploring;
   ros2::Subscription<ros2::Empty> m_hearsSave;
 };
 

@@ -117,7 +117,7 @@ Parameters read(const Source& source) {
   Parameters p;
   auto& n = p.navigation;
   strict_files::checkSections(source, {kNode, "map", "insertion", "abstraction", "slam", "planner",
-                                       "drive", "guide", "movers", "focus"});
+                                       "drive", "guide", "movers", "focus", "explore"});
   strict_files::readSection(source, kNode, p.node);
   strict_files::readSection(source, "map", p.map);
   strict_files::readSection(source, "insertion", p.insertion);
@@ -128,6 +128,7 @@ Parameters read(const Source& source) {
   strict_files::readSection(source, "guide", n.guide);
   strict_files::readSection(source, "movers", n.movers);
   strict_files::readSection(source, "focus", n.focus);
+  strict_files::readSection(source, "explore", n.explore);
   if (p.node.drive && (p.node.order.empty() || n.reactive.empty()))
     throw std::runtime_error("drive: expected order and drive.reactive, too");
   return p;

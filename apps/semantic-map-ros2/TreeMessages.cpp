@@ -1,43 +1,31 @@
 #include "TreeMessages.h"
 
-#include <chrono>
 #include <stdexcept>
 #include <utility>
 
 namespace semantic_map_ros2 {
 
-namespace {
-
-const std::string kId = "SemanticTree";
-constexpr int kChanges = 100;  // that wait for readers that are slow
-
-/** No two runs have the same. */
-std::uint32_t numberOfRun() {
-  return static_cast<std::uint32_t>(std::chrono::system_clock::now().time_since_epoch().count());
-}
-
-}  // namespace
-
 TreeMessages::TreeMessages(ros2::Node& node, semantic_octree::SemanticOcTree& map,
                            std::string frame)
     : m_map(map),
       m_frame(std::move(frame)),
-      m_writesChanges(node, "~/change", {true, false, kChanges}),
+      m_teller(map),
+      m_writesChanges(node, "~/change", {true, false, TreeTeller::kMostChanges}),
       m_writesAll(node, "~/compressed", {true, false, 1}) {}
 
 void TreeMessages::publish(ros2::Stamp stamp) {
-  if (!isRead()) return m_broadcast.reset();
-  if (!m_broadcast) m_broadcast.emplace(m_map, numberOfRun());
-  if (std::string change = m_broadcast->change(); !change.empty())
-    write(m_writesChanges, std::move(change), stamp);
-  if (isAsked()) write(m_writesAll, m_broadcast->all(), stamp);
+  const auto writer = [&](ros2::Publication<ros2::Octomap>& to) {
+    return [this, &to, stamp](std::string data) { write(to, std::move(data), stamp); };
+  };
+  const TreeTeller::Write all = writer(m_writesAll);
+  m_teller.tell(isRead(), writer(m_writesChanges), isAsked() ? all : nullptr);
 }
 
 void TreeMessages::write(ros2::Publication<ros2::Octomap>& to, std::string bytes,
                          ros2::Stamp stamp) {
   ros2::Octomap message{};
   message.header = ros2::headerOf(stamp, m_frame);
-  message.id = ros2::textOf(kId);
+  message.id = ros2::textOf(TreeTeller::kId);
   message.resolution = m_map.getResolution();
   message.data._length = message.data._maximum = static_cast<std::uint32_t>(bytes.size());
   message.data._buffer = reinterpret_cast<std::uint8_t*>(bytes.data());
@@ -47,15 +35,16 @@ void TreeMessages::write(ros2::Publication<ros2::Octomap>& to, std::string bytes
 TreeReader::TreeReader(ros2::Node& node, const std::string& of)
     : m_node(node),
       m_allName(of + "/compressed"),
-      m_hearsChanges(node, of + "/change", {true, false, kChanges},
+      m_hearsChanges(node, of + "/change", {true, false, TreeTeller::kMostChanges},
                      [this](const Message& message) { take(message, false); }) {}
 
 void TreeReader::take(const Message& message, bool isAll) {
   const std::lock_guard<std::mutex> lock(m_mutex);
   m_isAnswered |= isAll;
   try {
-    if (ros2::textOf(message->id) != kId)
-      throw std::runtime_error("a message of '" + ros2::textOf(message->id) + "', expected " + kId);
+    if (ros2::textOf(message->id) != TreeTeller::kId)
+      throw std::runtime_error("a message of '" + ros2::textOf(message->id) + "', expected " +
+                               TreeTeller::kId);
     m_isLacking = !m_copy.accept(
         {reinterpret_cast<const char*>(message->data._buffer), std::size_t(message->data._length)});
     m_hasMap |= !m_isLacking;

@@ -1,17 +1,15 @@
 #pragma once
-#include <map_streams/MapStream.h>
-
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include "NodeMap.h"
 #include "ros2/Node.h"
 
 namespace semantic_map_ros2 {
 
 /** A map's compressed tree for those who keep a copy: `~/change` has what changed, `~/compressed`
- * all of it, for who comes late or lost a change. The messages are octomap_msgs/Octomap with the id
- * "SemanticTree", and with what semantic_octree::TreeBroadcast says as data. */
+ * all of it, for who comes late or lost a change. */
 class TreeMessages {
  public:
   /** Node and map must outlive it. \param frame of the map */
@@ -29,7 +27,7 @@ class TreeMessages {
 
   semantic_octree::SemanticOcTree& m_map;
   std::string m_frame;
-  std::optional<semantic_octree::TreeBroadcast> m_broadcast;  ///< while somebody reads
+  TreeTeller m_teller;
   ros2::Publication<ros2::Octomap> m_writesChanges, m_writesAll;
 };
 

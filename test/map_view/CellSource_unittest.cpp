@@ -245,8 +245,8 @@ TEST(CellLook, ColorsSayWhatTheyShould) {
   ASSERT_EQ(look.classOf(road), 1);
   EXPECT_EQ(look.colorOf(road), map.classes().color(1));
   ViewStyle style;
-  for (const ViewColoring coloring :
-       {ViewColoring::Probability, ViewColoring::Entropy, ViewColoring::Occupancy}) {
+  for (const ViewColoring coloring : {ViewColoring::Probability, ViewColoring::Entropy,
+                                      ViewColoring::Occupancy, ViewColoring::Gain}) {
     style.coloring = coloring;
     look.setStyle(style);
     const Color c = look.colorOf(road);
@@ -278,6 +278,28 @@ TEST(CellLook, ColorsSayWhatTheyShould) {
   style.coloring = ViewColoring::Class;
   look.setStyle(style);
   EXPECT_FALSE(look.scale()) << "the list of classes says it";
+}
+
+TEST(CellLook, GainFallsWithEachLook) {
+  SemanticOcTree map = randomMap(7);
+  map.clear();
+  semantic_types::LabeledCloud cloud;
+  cloud.points = {{1.01F, 0.01F, 0.01F}};
+  cloud.classes = {1};
+  ViewStyle style;
+  style.coloring = ViewColoring::Gain;
+  int before = -1;
+  for (int looks = 1; looks < 6; ++looks) {
+    map.insert(cloud, Eigen::Isometry3d::Identity());
+    CellLook look(map);
+    look.setStyle(style);
+    const octomap::OcTreeKey key = map.coordToKey(1.01, 0.01, 0.01);
+    const Color c = look.colorOf(FullCells(map).at({key[0], key[1], key[2]}));
+    const int greenness = c.g - c.r;
+    EXPECT_GE(greenness, before) << looks << " looks";
+    before = looks == 1 ? greenness + 50 : greenness;
+  }
+  EXPECT_EQ(before, 215) << "nothing is left to see";
 }
 
 TEST(CellAnswer, SaysWhatTheMapSays) {

@@ -66,23 +66,30 @@ TEST_F(RoadInGrass, hasAPathToAGoal) {
   EXPECT_EQ(live->end(), kStopped);
 }
 
-TEST_F(RoadInGrass, isDrivenToAGoal) {
-  const std::string sources = MSO_SOURCE_DIR;
-  start({"-p", "order:=" + order(), "-p", "drive:=true", "-p",
-         "drive.reactive:=" + sources + "/config/reactive/robot.ini", "-p",
-         "movers.classes:=", "-p", "planner.vehicle:=" + sources + "/config/vehicles/robot.yaml"});
-  Heard<ros2::Twist> commands(*live, "/cmd_vel");
-  Heard<ros2::Path> paths(*live, "/plan");
-  ros2::Publication<ros2::PoseStamped> goals(live->node(), "goal_pose", {});
-  ros2::Publication<ros2::Odometry> odometry(live->node(), "odom", {});
-  const std::string map = "map", base = "base_link";
-  double x = 0, y = 0, heading = 0;
-  std::size_t seen = 0, scans = 0;
-  const auto step = [&] {
-    const auto command = commands.last();
-    const double speed = command ? command->linear.x : 0, turn = command ? command->angular.z : 0;
+namespace {
+
+/** A robot that does at once what it is told. */
+class DrivenRobot : public RoadInGrass {
+ protected:
+  void SetUp() override {
+    const std::string sources = MSO_SOURCE_DIR;
+    start({"-p", "order:=" + order(), "-p", "drive:=true", "-p",
+           "drive.reactive:=" + sources + "/config/reactive/robot.ini", "-p",
+           "movers.classes:=", "-p", "planner.vehicle:=" + sources + "/config/vehicles/robot.yaml",
+           "-p", "abstraction.relevant:=road: 1", "-p", "explore.budget:=2"});
+    commands = std::make_unique<Heard<ros2::Twist>>(*live, "/cmd_vel");
+    goals = std::make_unique<ros2::Publication<ros2::PoseStamped>>(live->node(), "goal_pose",
+                                                                   ros2::Qos());
+    odometry =
+        std::make_unique<ros2::Publication<ros2::Odometry>>(live->node(), "odom", ros2::Qos());
+  }
+  /** It and what it sees of the world, for 50 ms. */
+  void step() {
     constexpr double kSeconds = 0.05;
-    heading += kSeconds * turn;
+    const std::string map = "map", base = "base_link";
+    const auto command = commands->last();
+    const double speed = command ? command->linear.x : 0, turn = command ? command->angular.z : 0;
+    heading += kSeconds * turn, driven += kSeconds * std::abs(speed);
     x += kSeconds * speed * std::cos(heading), y += kSeconds * speed * std::sin(heading);
     ros2::Odometry message{};
     const ros2::Stamp stamp = now();
@@ -90,27 +97,85 @@ TEST_F(RoadInGrass, isDrivenToAGoal) {
     message.child_frame_id = ros2::textOf(base);
     message.pose.pose = {{x, y, 0}, {0, 0, std::sin(heading / 2), std::cos(heading / 2)}};
     message.twist.twist.linear.x = speed, message.twist.twist.angular.z = turn;
-    odometry.write(message);
-    if (scans++ % 10 == 0) {  // the same world from where the robot is
-      auto cloud = scan();
-      const Isometry3d T =
-          Isometry3d(Translation3d(x, y, 0) * AngleAxisd(heading, Vector3d::UnitZ()));
-      const Vector3d sensor(0.05, 0.05, 30);
-      for (auto& p : cloud.points)
-        p = (T.inverse() * (p.cast<double>() + sensor) - sensor).cast<float>();
-      points->write(PointMessage(cloud, "lidar", stamp).message());
-      ++seen;
-    }
+    odometry->write(message);
+    if (steps++ % 10 == 0) points->write(PointMessage(seen(), "lidar", stamp).message());
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  };
-  live->waitFor([&] { return odometry.isRead() && points->isRead(); });
-  live->waitFor([&] { return step(), contains(live->said(), "points inserted"); });
-  live->send(goals, goalAt(3, 0, map));
-  EXPECT_TRUE(live->waitFor([&] { return step(), contains(live->said(), "the robot is there"); }));
+  }
+  /** The same world from where the robot is. */
+  semantic_types::LabeledCloud seen() const {
+    const auto all = scan();
+    semantic_types::LabeledCloud cloud;
+    const Isometry3d T =
+        Isometry3d(Translation3d(x, y, 0) * AngleAxisd(heading, Vector3d::UnitZ()));
+    const Vector3d sensor(0.05, 0.05, 30);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Vector3d p = T.inverse() * (all.points[i].cast<double>() + sensor);
+      if (p.norm() > sight) continue;
+      cloud.points.push_back((p - sensor).cast<float>());
+      cloud.classes.push_back(all.classes[i]);
+    }
+    return cloud;
+  }
+  bool drivesUntil(const std::string& said) {
+    return live->waitFor([&] { return step(), contains(live->said(), said); });
+  }
+  bool stands() {
+    return live->waitFor([&] { return step(), commands->last()->linear.x == 0; });
+  }
+
+  double x = 0, y = 0, heading = 0, driven = 0;
+  double sight = 100;  ///< m
+  std::size_t steps = 0;
+  std::unique_ptr<Heard<ros2::Twist>> commands;
+  std::unique_ptr<ros2::Publication<ros2::PoseStamped>> goals;
+  std::unique_ptr<ros2::Publication<ros2::Odometry>> odometry;
+};
+
+}  // namespace
+
+TEST_F(DrivenRobot, comesToAGoal) {
+  Heard<ros2::Path> paths(*live, "/plan");
+  live->waitFor([&] { return odometry->isRead() && points->isRead(); });
+  drivesUntil("points inserted");
+  live->send(*goals, goalAt(3, 0, "map"));
+  EXPECT_TRUE(drivesUntil("the robot is there"));
   EXPECT_NEAR(x, 3, 0.5);
   EXPECT_GT(paths.all().size(), 0u);
-  EXPECT_TRUE(live->waitFor([&] { return commands.last()->linear.x == 0; }));
+  EXPECT_TRUE(stands());
   EXPECT_EQ(live->end(), kStopped) << live->said();
+}
+
+TEST_F(DrivenRobot, exploresByAMessageUntilItIsOverOrEnded) {
+  ros2::Publication<ros2::Bool> explores(live->node(), "/semantic_map/explore", {});
+  live->send(explores, {true});
+  EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "nothing was seen yet"); }));
+  sight = 4;
+  drivesUntil("points inserted");
+  live->send(explores, {true});
+  EXPECT_TRUE(drivesUntil("the robot explored; the budget is driven")) << live->said();
+  EXPECT_NEAR(driven, 2, 1);
+  const auto drivesOn = [&] {
+    const double from = driven;
+    return live->waitFor([&] { return step(), driven > from + 0.3; });
+  };
+  live->send(explores, {true});
+  EXPECT_TRUE(drivesOn());
+  live->send(explores, {false});
+  EXPECT_TRUE(drivesUntil("the robot explored; it was ended"));
+  EXPECT_TRUE(stands());
+  live->send(explores, {true});
+  EXPECT_TRUE(drivesOn());
+  live->send(*goals, goalAt(0, 0, "map"));
+  EXPECT_TRUE(drivesUntil("the robot is there")) << live->said();
+  EXPECT_LT(std::hypot(x, y), 0.5);
+  EXPECT_EQ(live->end(), kStopped) << live->said();
+}
+
+TEST_F(RoadInGrass, needsAnOrderToExplore) {
+  start({});
+  ros2::Publication<ros2::Bool> explores(live->node(), "/semantic_map/explore", {});
+  live->send(explores, {true});
+  EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "explore: there is no order"); }));
 }
 
 /** The last transform from map to odom. */

@@ -137,16 +137,21 @@ TEST_F(ViewStrategies, neverChooseAViewTwice) {
        {nearestFrontier(over, options),
         relevantViews(over, world.map(), relevant(PaintedWorld::Road), options)}) {
     std::vector<TPose2D> seen;
+    double most = 0;
     while (const auto view = strategy->next(kStart, 0)) {
       for (const TPose2D& before : seen)
         EXPECT_FALSE(std::hypot(before.x - view->pose.x, before.y - view->pose.y) < 2.4 &&
                      std::cos(before.phi - view->pose.phi) > 0.9);
+      const view_information::Bounds growth = strategy->growth();
+      EXPECT_LE(growth.lower, growth.upper);
+      most = std::max(most, growth.upper);
       seen.push_back(view->pose);
       strategy->done(*view);
       ASSERT_LT(seen.size(), 500U);
     }
     EXPECT_GT(seen.size(), 3U);
     EXPECT_NE(strategy->conclusion().find("left within reach"), std::string::npos);
+    EXPECT_EQ(most > 0, strategy->conclusion().find("tree's objective") != std::string::npos);
   }
 }
 

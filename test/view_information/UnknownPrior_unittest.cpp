@@ -232,18 +232,39 @@ TEST(GainField, sweepIsTheTreeOfItsVoxels) {
   const auto from = keyAt(s.map, 0.5, 0.3, 1);
   const SectorGains gains = s.field.sweep(view, s.prior, from);
   std::vector<TreeCell> cells;
+  std::vector<std::vector<double>> beliefs;
+  std::vector<double> reached, left{1};
   const std::vector<int> parents = parentsOf(view);
   for (const ViewTemplate::Voxel& v : view.voxels()) {
     const octomap::OcTreeKey key =
         semantic_octree::octomapKey(from[0] + v.x, from[1] + v.y, from[2] + v.z);
     const Gain unknown = s.prior.patch(0, 0).at(key[0], key[1], key[2]);
     const Gain gain = s.field.at(key).value_or(unknown);
+    if (!cells.empty()) {
+      reached.push_back(left[static_cast<std::size_t>(parents[cells.size()])]);
+      left.push_back(reached.back() * static_cast<double>(gain.pass));
+      beliefs.push_back(nothingKnown(3));
+      if (const auto leaf = s.map.search(key))
+        s.map.belief(leaf).distribution(3, beliefs.back().data());
+    }
     cells.push_back(cells.empty() ? TreeCell{-1, 1, 0}
                                   : TreeCell{parents[cells.size()], gain.pass, gain.gain});
   }
   const double tree = informationOfTree(cells);
   EXPECT_GT(tree, 1);
   EXPECT_NEAR(gainOfHeading(gains, 0, 360), tree, 0.01 * tree);
+  // What it adds to the compressed tree; beams end where they hardly reach anything.
+  const Bounds growth = s.field.growth(view, s.prior, from, 0),
+               all = growthOfTree(s.question, s.model, beliefs, reached);
+  const auto n = static_cast<double>(beliefs.size());
+  EXPECT_GT(growth.upper, 1);
+  EXPECT_NEAR(growth.upper, n * all.upper, 0.01 * n * all.upper);
+  EXPECT_NEAR(growth.lower, n * all.lower, 0.01 * n * all.upper);
+  const ViewTemplate narrow({3, -60, 20, 90}, kVoxel);
+  double ofQuarters = 0;
+  for (const int sector : {4, 13, 22, 31})
+    ofQuarters += s.field.growth(narrow, s.prior, from, sector).upper;
+  EXPECT_NEAR(ofQuarters, growth.upper, 1e-9 * growth.upper);
 }
 
 /** The farther half of a view's reach has fewer voxels, which stand for all. */

@@ -15,6 +15,8 @@ Header headerOf(Stamp stamp, const std::string& frame) { return {timeOf(stamp), 
 
 std::string typeHashOf(const dds_topic_descriptor_t& type) {
   static const std::map<std::string, std::string> kHashes = {
+      {"std_msgs::msg::dds_::Bool_",
+       "feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9"},
       {"std_msgs::msg::dds_::Empty_",
        "20b625256f32d5dbc0d04fee44f43c41e51c70d3502f84b4a08e7a9c26a96312"},
       {"rosgraph_msgs::msg::dds_::Clock_",

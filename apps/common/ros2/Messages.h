@@ -21,6 +21,7 @@ const dds_topic_descriptor_t& descriptorOf();
   inline const dds_topic_descriptor_t& descriptorOf<type>() { \
     return package##_msg_dds__##type##__desc;                 \
   }
+ROS2_MESSAGE(std_msgs, Bool)
 ROS2_MESSAGE(std_msgs, Empty)
 ROS2_MESSAGE(rosgraph_msgs, Clock)
 ROS2_MESSAGE(geometry_msgs, PoseStamped)

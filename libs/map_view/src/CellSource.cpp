@@ -230,17 +230,32 @@ Color ramp(double value) {
 
 const strict_files::Choices<ViewColoring>& choicesOf(ViewColoring) {
   static const strict_files::Choices<ViewColoring> choices = {
-      {"class", ViewColoring::Class},     {"probability", ViewColoring::Probability},
-      {"entropy", ViewColoring::Entropy}, {"occupancy", ViewColoring::Occupancy},
-      {"height", ViewColoring::Height},   {"retained", ViewColoring::Retained}};
+      {"class", ViewColoring::Class},      {"probability", ViewColoring::Probability},
+      {"entropy", ViewColoring::Entropy},  {"occupancy", ViewColoring::Occupancy},
+      {"height", ViewColoring::Height},    {"gain", ViewColoring::Gain},
+      {"retained", ViewColoring::Retained}};
   return choices;
 }
+
+namespace {
+tree_abstraction::AbstractionWeights allClassesOf(const SemanticOcTree& map) {
+  tree_abstraction::AbstractionWeights weights;
+  weights.terms = {tree_abstraction::wholeClassVariable("all", 1, map.numClasses())};
+  return weights;
+}
+}  // namespace
 
 bool ViewStyle::hidesClasses() const {
   return std::find(hiddenClasses.begin(), hiddenClasses.end(), true) != hiddenClasses.end();
 }
 
-CellLook::CellLook(const SemanticOcTree& map) : m_map(map) { forget(); }
+CellLook::CellLook(const SemanticOcTree& map)
+    : m_map(map),
+      m_question(allClassesOf(map), map.numClasses()),
+      m_model(map.numClasses(), map.filterParameters()),
+      m_filter(map.numClasses(), map.filterParameters()) {
+  forget();
+}
 
 void CellLook::forget() {
   m_inner.clear();
@@ -287,6 +302,8 @@ std::optional<ColorScale> CellLook::scale() const {
       return ColorScale{"p(occupied)", "0.5", "1"};
     case ViewColoring::Height:
       return ColorScale{"height, m", meters(heights().first), meters(heights().second), ramp};
+    case ViewColoring::Gain:
+      return ColorScale{"a look tells, of the first", "100 %", "0 %"};
     case ViewColoring::Retained:
       return ColorScale{"retained of its block", "0 %", "100 %"};
     case ViewColoring::Class:
@@ -308,12 +325,23 @@ Color CellLook::colorOf(const ViewCell& cell) const {
     case ViewColoring::Height:
       return ramp((cell.center(m_map.getResolution()).z() - heights().first) /
                   std::max(heights().second - heights().first, 1e-6));
+    case ViewColoring::Gain:
+      return trafficLight(1 - gainOf(cell.node));
     case ViewColoring::Retained:
       return trafficLight(m_compression ? m_compression->retainedAround(cell.around) : 1);
     case ViewColoring::Class:
       break;
   }
   return semantic_types::colorOf(classOf(cell), m_map.classes());
+}
+
+/** Filter and limits are of leaves. */
+double CellLook::gainOf(const SemanticOcTreeNode& node) const {
+  const double first = m_question.fallThrough(m_filter, m_model, m_filter.uniform(0));
+  const double now = node.isLeaf()
+                         ? m_question.fallThrough(m_filter, m_model, m_map.belief(node))
+                         : m_question.information(m_model, m_map.distribution(node).data());
+  return std::clamp(now / first, 0.0, 1.0);
 }
 
 CellLook::State CellLook::newState(const ViewCell& cell) const {

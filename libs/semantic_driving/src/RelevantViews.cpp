@@ -79,6 +79,7 @@ class RelevantViews : public ViewStrategy {
   std::optional<View> next(const TPose2D& from, double z) override;
   void done(const View& view) override;
   std::string conclusion() const override;
+  Bounds growth() const override;
   double left(Column c) override;
 
  private:
@@ -90,7 +91,7 @@ class RelevantViews : public ViewStrategy {
   };
   void follow(const TPose2D& from, double z);
   void learnTile(Column first, const GroundPoint& here);
-  SectorGains sweepFrom(const ViewPlace& place);
+  octomap::OcTreeKey sensorAt(Column column, double z) const;
   std::vector<Candidate> candidates(const GroundFlood& flood, double heading);
   void addBest(const ViewPlace& place, double heading, std::vector<Candidate>& candidates);
   std::vector<Candidate> centers(std::vector<Candidate> candidates) const;
@@ -113,6 +114,7 @@ class RelevantViews : public ViewStrategy {
   SweepMemory m_sweeps;
   DoneViews m_done;
   std::set<Column> m_toLearn;  ///< first columns of tiles whose ground may not be connected yet
+  std::optional<Candidate> m_most;  ///< that promises most
   std::optional<View> m_chosen;
   TPose2D m_from;  ///< where it was chosen
   /** What the last choices promised, what the map told then, and the way to there. */
@@ -151,11 +153,10 @@ void RelevantViews::learnTile(Column first, const GroundPoint& here) {
       }
 }
 
-SectorGains RelevantViews::sweepFrom(const ViewPlace& place) {
-  const double z = m_ground.centerOf(place.z) + m_options.sensorHeight;
-  return m_field.sweep(
-      m_view, *m_prior,
-      semantic_octree::octomapKey(place.column.x, place.column.y, m_ground.keyOf(z)));
+/** \param z of the ground, m */
+octomap::OcTreeKey RelevantViews::sensorAt(Column column, double z) const {
+  return semantic_octree::octomapKey(column.x, column.y,
+                                     m_ground.keyOf(z + m_options.sensorHeight));
 }
 
 /** The best of a place's headings, unless all were done. \param heading of the vehicle */
@@ -163,7 +164,8 @@ void RelevantViews::addBest(const ViewPlace& place, double heading,
                             std::vector<Candidate>& candidates) {
   const double width = m_view.shape().width, z = m_ground.centerOf(place.z);
   const bool isAllAround = width >= 360;
-  const SectorGains& gains = m_sweeps.of(place.column, [&] { return sweepFrom(place); });
+  const SectorGains& gains = m_sweeps.of(
+      place.column, [&] { return m_field.sweep(m_view, *m_prior, sensorAt(place.column, z)); });
   std::optional<View> best;
   for (int s = 0; s < (isAllAround ? 1 : ViewTemplate::kHeadings); ++s) {
     const TPose2D pose{m_ground.centerOf(place.column.x), m_ground.centerOf(place.column.y),
@@ -250,6 +252,7 @@ std::optional<View> RelevantViews::next(const TPose2D& from, double z) {
   const GroundFlood flood(m_planner, from, m_ground.keyOf(z), kFrontierRadius);
   const std::vector<Candidate> all = candidates(flood, from.phi);
   std::vector<Candidate> stops = centers(all);
+  m_most = stops.empty() ? std::nullopt : std::optional(stops.front());
   m_left = 0;
   for (const Candidate& stop : stops) m_left += stop.view.promise;
   takeAccount(from);
@@ -267,14 +270,25 @@ std::optional<View> RelevantViews::next(const TPose2D& from, double z) {
 
 void RelevantViews::done(const View& view) { m_done.add(view.pose); }
 
+Bounds RelevantViews::growth() const {
+  if (!m_most) return {};
+  const auto sector = static_cast<int>(
+      std::lround((m_most->view.pose.phi + M_PI) / (2 * M_PI) * ViewTemplate::kHeadings - 0.5));
+  return m_field.growth(m_view, *m_prior, sensorAt(m_most->column, m_most->view.z), sector);
+}
+
 std::string RelevantViews::conclusion() const {
   const Account last = lately();
-  char text[200];
+  const Bounds tree = growth();
+  char text[400];
   std::snprintf(
       text, sizeof text,
       "what is left within reach promises %.1f nat; the last %.0f m promised %.1f nat and "
-      "brought %.1f: %.0f %% of the relevant information is known; places looked from: %zu",
-      m_left, last.meters, last.promised, last.known, 100 * (1 - shareLeft()), m_done.size());
+      "brought %.1f: %.0f %% of the relevant information is known; the best look that is left adds "
+      "%.1f to %.1f nat to the compressed tree's objective, it is expected; places looked from: "
+      "%zu",
+      m_left, last.meters, last.promised, last.known, 100 * (1 - shareLeft()), tree.lower,
+      tree.upper, m_done.size());
   return text;
 }
 

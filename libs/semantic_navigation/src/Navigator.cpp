@@ -158,9 +158,11 @@ void Navigator::setGoal(const TPose2D& goal) {
   m_conclusion.clear();
 }
 
-void Navigator::explore(const std::optional<tree_abstraction::AbstractionWeights>& weights) {
-  auto views = weights ? relevantViews(m_planner, waitedFor().map(), *weights, m_options.explore)
-                       : nearestFrontier(m_planner, m_options.explore);
+void Navigator::explore(const std::optional<tree_abstraction::AbstractionWeights>& weights,
+                        const ExploreOptions& options) {
+  auto views = weights ? relevantViews(m_planner, waitedFor().map(), *weights, options)
+                       : nearestFrontier(m_planner, options);
+  m_options.explore = options;
   setGoal(m_state.pose);
   m_views = std::move(views);
   m_view.reset();
@@ -332,11 +334,11 @@ void Navigator::guide(double seconds) {
   note("replan", clock.lap());
 }
 
-/** At the view, where it cannot be reached, and on a long way there. */
+/** At the view, where it cannot be reached, on a long way there, and when the budget is driven. */
 bool Navigator::isTimeToChoose() const {
   constexpr double kBetween = 5;  // m
   return !m_view || m_guide->arrived(m_state, m_controller) || m_guide->gaveUp() ||
-         m_driven - m_chosenAt >= kBetween;
+         m_driven - m_chosenAt >= kBetween || m_driven >= m_options.explore.budget;
 }
 
 void Navigator::chooseView() {
@@ -344,16 +346,21 @@ void Navigator::chooseView() {
     m_views->done(*m_view);
   m_chosenAt = m_driven;
   const bool isBudgetDriven = m_driven >= m_options.explore.budget;
-  const auto next = isBudgetDriven ? std::nullopt : m_views->next(m_state.pose, m_z);
-  if (!next) {
-    m_conclusion = isBudgetDriven ? "the budget is driven; " : "";
-    m_conclusion += m_views->conclusion();
-    m_controller.setPath({});
-    return;
-  }
+  if (isBudgetDriven) return conclude("the budget is driven; ");
+  const auto next = m_views->next(m_state.pose, m_z);
+  if (!next) return conclude("");
   if (m_view && m_view->pose == next->pose && !m_guide->gaveUp()) return;
   m_view = next;
   m_guide.emplace(m_options.guide, m_planner, next->pose);
+}
+
+void Navigator::conclude(const std::string& why) {
+  m_conclusion = why + m_views->conclusion();
+  m_controller.setPath({});
+}
+
+void Navigator::endExploring() {
+  if (m_views && m_conclusion.empty()) conclude("it was ended; ");
 }
 
 /** What of the map is in the way, in the robot's frame. */

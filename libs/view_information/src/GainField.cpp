@@ -218,21 +218,47 @@ std::optional<Gain> GainField::at(const octomap::OcTreeKey& key) const {
   return Gain{gain.pass, std::abs(gain.gain)};
 }
 
-SectorGains GainField::sweep(const ViewTemplate& view, UnknownPrior& prior,
-                             const octomap::OcTreeKey& from) {
+template <class Visit>
+void GainField::lookAround(const ViewTemplate& view, UnknownPrior& prior,
+                           const octomap::OcTreeKey& from, Visit visit) const {
   Surroundings around(*this, prior, from, view);
-  SectorGains gains{};
   const auto& voxels = view.voxels();
   std::vector<float> leaves(static_cast<std::size_t>(view.reach()) + 1, 1);  // by shell
   for (std::size_t i = 1; i < voxels.size();) {
     const ViewTemplate::Voxel& v = voxels[i];
     const float reached = leaves[v.shell - 1U];
     const Gain gain = around.at(from[0] + v.x, from[1] + v.y, from[2] + v.z);
-    gains[v.heading] += view.weight(v) * reached * gain.gain;
+    visit(v, reached, gain.gain);
     leaves[v.shell] = reached * gain.pass;
     i = leaves[v.shell] < kLeastReach ? static_cast<std::size_t>(v.next) : i + 1;
   }
+}
+
+SectorGains GainField::sweep(const ViewTemplate& view, UnknownPrior& prior,
+                             const octomap::OcTreeKey& from) const {
+  SectorGains gains{};
+  lookAround(view, prior, from, [&](const ViewTemplate::Voxel& v, float reached, float gain) {
+    gains[v.heading] += view.weight(v) * reached * gain;
+  });
   return gains;
+}
+
+Bounds GainField::growth(const ViewTemplate& view, UnknownPrior& prior,
+                         const octomap::OcTreeKey& from, int sector) const {
+  std::vector<std::vector<double>> beliefs;
+  std::vector<double> reach;
+  lookAround(view, prior, from, [&](const ViewTemplate::Voxel& v, float reached, float) {
+    if (!view.sees(v, sector)) return;
+    reach.push_back(static_cast<double>(reached));
+    beliefs.push_back(m_nothingKnown);
+    const auto leaf =
+        m_map.search(semantic_octree::octomapKey(from[0] + v.x, from[1] + v.y, from[2] + v.z));
+    if (leaf) m_map.belief(leaf).distribution(m_map.numClasses(), beliefs.back().data());
+  });
+  if (reach.empty()) return {};
+  const Bounds ofEqualShares = growthOfTree(m_question, m_model, beliefs, reach);
+  const auto cells = static_cast<double>(reach.size());
+  return {cells * ofEqualShares.lower, cells * ofEqualShares.upper};
 }
 
 std::size_t GainField::memoryUsage() const {

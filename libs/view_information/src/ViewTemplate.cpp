@@ -145,12 +145,23 @@ ViewTemplate::ViewTemplate(const ViewShape& shape, double voxelSize) : m_shape(s
                             : 1);
 }
 
+namespace {
+int sectorsOf(double width) {
+  constexpr int kHeadings = ViewTemplate::kHeadings;
+  return std::clamp(static_cast<int>(std::lround(width / 360 * kHeadings)), 1, kHeadings);
+}
+}  // namespace
+
+bool ViewTemplate::sees(const Voxel& voxel, int sector) const {
+  const int sectors = sectorsOf(m_shape.width);
+  return (voxel.heading - sector + sectors / 2 + kHeadings) % kHeadings < sectors;
+}
+
 double headingOf(int sector) { return -M_PI + (sector + 0.5) * 2 * M_PI / ViewTemplate::kHeadings; }
 
 double gainOfHeading(const SectorGains& gains, int sector, double width) {
   constexpr int kHeadings = ViewTemplate::kHeadings;
-  const int sectors =
-      std::clamp(static_cast<int>(std::lround(width / 360 * kHeadings)), 1, kHeadings);
+  const int sectors = sectorsOf(width);
   double sum = 0;
   for (int i = 0; i < sectors; ++i)
     sum += gains[static_cast<std::size_t>((sector - sectors / 2 + i + kHeadings) % kHeadings)];

@@ -2,6 +2,7 @@
 #include <map_view/LiveCompression.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <strict_files/OptionList.h>
+#include <view_information/BeamInformation.h>
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -19,7 +20,7 @@ using semantic_types::ClassId;
 using semantic_types::Color;
 
 /** What the color of an occupied cell says. */
-enum class ViewColoring { Class, Probability, Entropy, Occupancy, Height, Retained };
+enum class ViewColoring { Class, Probability, Entropy, Occupancy, Height, Gain, Retained };
 const strict_files::Choices<ViewColoring>& choicesOf(ViewColoring);
 
 /** The colors of a coloring from one end of its scale to the other. */
@@ -68,8 +69,9 @@ class CellLook {
   KeyBox bounds() const;
   /** Class: the classes' colors (gray: none). Probability of the likeliest class, entropy of the
    * distribution and occupancy: from red (unsure) over yellow to green (sure). Height: from dark
-   * violet (lowest) over green to yellow (highest). Retained of what is worth telling in the cell's
-   * block: from red (nothing) to green (all). */
+   * violet (lowest) over green to yellow (highest). Gain: what another look tells of the class,
+   * from green (nothing) to red (as much as the first look at unknown space). Retained of what is
+   * worth telling in the cell's block: from red (nothing) to green (all). */
   Color colorOf(const ViewCell& cell) const;
   /** What these colors mean; none: the classes. */
   std::optional<ColorScale> scale() const;
@@ -85,8 +87,13 @@ class CellLook {
   State newState(const ViewCell& cell) const;
   /** Lowest and highest of what is known and not cut off, m. */
   std::pair<double, double> heights() const;
+  /** What a look at it tells, of what a first look does. */
+  double gainOf(const semantic_octree::SemanticOcTreeNode& node) const;
 
   const SemanticOcTree& m_map;
+  const view_information::Question m_question;  ///< which class is it
+  const view_information::BeamModel m_model;
+  const semantic_octree::ClassFilter<float> m_filter;
   const LiveCompression* m_compression = nullptr;
   ViewStyle m_style;
   Eigen::AlignedBox3d m_known;  ///< m

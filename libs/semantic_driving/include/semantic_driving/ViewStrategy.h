@@ -55,6 +55,10 @@ class ViewStrategy {
   virtual void done(const View& view) = 0;
   /** A sentence for people, when it is over. */
   virtual std::string conclusion() const = 0;
+  /** What the look that promised most in the last call of next() is expected to add to the
+   * objective of a compressed tree of the weights (GainField::growth()), nats summed over voxels; 0
+   * unless it is predicted. The map has to be as it was. */
+  virtual view_information::Bounds growth() const { return {}; }
   /** What looking at a column of the map (keys) may still tell, nats; 0 unless it is
    * predicted. */
   virtual double left(semantic_planning::Column) { return 0; }

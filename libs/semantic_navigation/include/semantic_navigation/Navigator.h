@@ -84,7 +84,14 @@ class Navigator {
   /** From now on it looks around, without a goal, until it is over (Status::Explored).
    * \param weights of what it looks for; none: it drives to the nearest border of what is known
    * \throw std::invalid_argument bad options or weights. */
-  void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights);
+  void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights) {
+    explore(weights, m_options.explore);
+  }
+  /** The same, with other options from now on. */
+  void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights,
+               const semantic_driving::ExploreOptions& options);
+  /** Exploring is over, if it was not. */
+  void endExploring();
   /** What looking at a column (map frame, meters) may still tell, nats; 0 without exploring. */
   double leftToSee(double x, double y);
   /** Where the robot is now. */
@@ -131,6 +138,7 @@ class Navigator {
   bool mayGuide() const;
   void guide(double seconds);
   void chooseView();
+  void conclude(const std::string& why);
   bool isTimeToChoose() const;
   semantic_driving::ObstaclePoints knownObstacles(double radius) const;
   semantic_driving::ObstaclePoints knownRoom(double radius) const;

@@ -40,6 +40,8 @@ class ViewTemplate {
   const std::vector<Voxel>& voxels() const { return m_voxels; }
   /** For how many voxels of its shell it stands: far ones are not all in the template. */
   float weight(const Voxel& voxel) const { return m_weights[voxel.shell]; }
+  /** A voxel is seen by who looks along a sector's middle. */
+  bool sees(const Voxel& voxel, int sector) const;
   int reach() const { return m_reach; }    ///< largest difference along an axis
   int lowest() const { return m_lowest; }  ///< difference in z
   int highest() const { return m_highest; }
@@ -72,7 +74,13 @@ class GainField {
   /** Nothing where the map knows nothing. */
   std::optional<Gain> at(const octomap::OcTreeKey& key) const;
   /** What views from a voxel gain: each voxel counts once, as surely as it is reached. */
-  SectorGains sweep(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from);
+  SectorGains sweep(const ViewTemplate& view, UnknownPrior& prior,
+                    const octomap::OcTreeKey& from) const;
+  /** What a view from a voxel along a sector's middle is expected to add to the objective of a
+   * compressed tree of the question's weights: growthOfTree() of the template's voxels, nats summed
+   * over these. The prior says which are reached, the map what is believed of them. */
+  Bounds growth(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from,
+                int sector) const;
 
   /** What the map tells: how far it is believed of each occupied voxel that it is something else
    * than of space of which nothing is known, nats. */
@@ -112,6 +120,10 @@ class GainField {
     return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 |
            std::uint64_t{static_cast<std::uint32_t>(y)} << 16 | static_cast<std::uint32_t>(z);
   }
+  /** visit(voxel of the view, P(reached), its gain) for all that is reached. */
+  template <class Visit>
+  void lookAround(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from,
+                  Visit visit) const;
   Stored read(const octomap::OcTreeKey& low);
   const Computed& computed(const semantic_octree::SemanticOcTreeNode& leaf);
   static Half stored(const Voxel* voxels);
