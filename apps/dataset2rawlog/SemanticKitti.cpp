@@ -151,13 +151,22 @@ std::string sixDigits(std::size_t number) {
   return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
 }
 
+/** SemanticKITTI's poses, or KITTI's own: sequences/00 has poses/00.txt. */
+fs::path posesOf(const fs::path& sequence) {
+  const fs::path folder = fs::weakly_canonical(sequence);
+  const fs::path kittis =
+      folder.parent_path().parent_path() / "poses" / (folder.filename().string() + ".txt");
+  const fs::path file = sequence / "poses.txt";
+  return !fs::exists(file) && fs::exists(kittis) ? kittis : file;
+}
+
 }  // namespace
 
 Summary convertSemanticKitti(const fs::path& sequence, const Conversion& conversion) {
   const ClassTable table =
       conversion.labels ? semantic_types::loadClassTable(conversion.classes) : ClassTable();
   const Eigen::Isometry3d Tr = readLidarToCamera(sequence / "calib.txt");
-  const auto lines = readLines(sequence / "poses.txt");
+  const auto lines = readLines(posesOf(sequence));
   const auto times = readLines(sequence / "times.txt");
   if (lines.size() != times.size())
     throw std::runtime_error((sequence / "times.txt").string() + ": " +

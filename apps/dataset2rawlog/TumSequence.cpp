@@ -87,7 +87,9 @@ std::optional<fs::path> nearest(const ImageList& images, double time) {
 /** Reads camera.ini: MRPT's section [CAMERA_PARAMS] and in it depth_factor.
  * \throw std::runtime_error naming the file and what is missing. */
 DepthCamera readCamera(const fs::path& file) try {
-  if (!fs::is_regular_file(file)) throw std::runtime_error("cannot be opened");
+  if (!fs::is_regular_file(file))
+    throw std::runtime_error(
+        "cannot be opened; it has the camera's fx, fy, cx, cy and depth_factor");
   const mrpt::config::CConfigFile config(file.string());
   DepthCamera camera;
   camera.intrinsics.loadFromConfigFile("CAMERA_PARAMS", config);
