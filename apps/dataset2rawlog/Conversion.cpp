@@ -23,6 +23,12 @@ using semantic_types::kMaxClasses;
 using semantic_types::kNoClass;
 using semantic_types::LabeledCloud;
 
+mrpt::Clock::time_point timeOf(double seconds, const strict_files::TextLine& line) try {
+  return labeled_cloud::timeOfSeconds(seconds);
+} catch (const std::invalid_argument& e) {
+  throw std::runtime_error(line.where + ": " + e.what());
+}
+
 std::filesystem::path imagesOf(const std::filesystem::path& rawlog) {
   return std::filesystem::absolute(rawlog).parent_path() / (rawlog.stem().string() + "_Images");
 }

@@ -4,6 +4,7 @@
 #include <labeled_cloud/Rawlogs.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semantic_types/ClassTable.h>
+#include <strict_files/TextFile.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -104,6 +105,10 @@ class Output {
   Summary m_summary;
   std::optional<Progress> m_progress;
 };
+
+/** A time that a line of a file has. \throw std::runtime_error naming the line: none that can be.
+ */
+mrpt::Clock::time_point timeOf(double seconds, const strict_files::TextLine& line);
 
 /** The folder of the images of a rawlog: X_Images for X.rawlog. */
 std::filesystem::path imagesOf(const std::filesystem::path& rawlog);

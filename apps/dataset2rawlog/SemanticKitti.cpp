@@ -1,5 +1,4 @@
 #include <labeled_cloud/Pictures.h>
-#include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <semantic_types/ClassTable.h>
 #include <strict_files/OutputFiles.h>
@@ -27,29 +26,6 @@ using strict_files::TextLine;
 
 namespace {
 
-/** The left color camera of a sequence in KITTI's layout: `P2` of calib.txt and image_2/. Its
- * images stay files of their own, copied beside the rawlog. */
-class KittiCamera {
- public:
-  /** \param rawlog Images go into imagesOf(rawlog), in finish().
-   * \throw std::runtime_error naming the file and what is missing or malformed. */
-  KittiCamera(const std::filesystem::path& sequence, const Eigen::Isometry3d& T_camera0_lidar,
-              const std::filesystem::path& rawlog);
-
-  /** The image of this name. \throw std::runtime_error naming a file that is
-   * missing or no image. */
-  mrpt::obs::CObservationImage observe(const std::string& name, mrpt::Clock::time_point time);
-  /** Puts the images that were observed beside the rawlog. \throw std::runtime_error naming one */
-  void finish() { m_target.commit(m_names); }
-
- private:
-  std::filesystem::path m_source;
-  strict_files::OutputFolder m_target;
-  std::vector<std::string> m_names;
-  mrpt::img::TCamera m_camera;
-  mrpt::poses::CPose3D m_T_lidar_camera;
-};
-
 namespace fs = std::filesystem;
 
 using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
@@ -65,44 +41,49 @@ Matrix34 readProjection(const fs::path& calib) {
   throw std::runtime_error(calib.string() + ": no line 'P2:'");
 }
 
-KittiCamera::KittiCamera(const fs::path& sequence, const Eigen::Isometry3d& T_camera0_lidar,
-                         const fs::path& rawlog)
-    : m_source(sequence / "image_2"), m_target(imagesOf(rawlog)) {
-  const Matrix34 P = readProjection(sequence / "calib.txt");
-  const Eigen::Matrix3d K = P.leftCols<3>();
-  // P2 = K [I | t] takes points of the first camera: the color camera sees them shifted by t.
-  const Eigen::Isometry3d T_camera2_lidar =
-      Eigen::Translation3d(K.inverse() * P.col(3)) * T_camera0_lidar;
-  m_T_lidar_camera =
-      mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_camera2_lidar.inverse().matrix()));
-  m_camera.setIntrinsicParamsFromValues(K(0, 0), K(1, 1), K(0, 2), K(1, 2));
-}
-
-mrpt::obs::CObservationImage KittiCamera::observe(const std::string& name,
-                                                  mrpt::Clock::time_point time) {
-  const fs::path file = m_source / (name + ".png");
-  const cv::Mat image = labeled_cloud::readImageFile(file, labeled_cloud::ImageKinds::All);
-  m_camera.ncols = static_cast<unsigned>(image.cols);
-  m_camera.nrows = static_cast<unsigned>(image.rows);
-  m_names.push_back(file.filename().string());
-  fs::copy_file(file, m_target.staged(m_names.back()), fs::copy_options::overwrite_existing);
-  mrpt::obs::CObservationImage observation;
-  observation.timestamp = time;
-  observation.sensorLabel = "image_2";
-  observation.cameraParams = m_camera;
-  observation.cameraPose = m_T_lidar_camera;
-  observation.image.setExternalStorage(file.filename().string());
-  return observation;
-}
-
-mrpt::Clock::time_point timeOf(const TextLine& line) {
-  const double seconds = numbersOf(line, 1)[0];
-  try {
-    return labeled_cloud::timeOfSeconds(seconds);
-  } catch (const std::invalid_argument& e) {
-    throw std::runtime_error(line.where + ": " + e.what());
+/** The left color camera of a sequence in KITTI's layout: `P2` of calib.txt and image_2/. Its
+ * images stay files of their own, copied beside the rawlog. */
+class KittiCamera {
+ public:
+  /** \param rawlog Images go into imagesOf(rawlog), in finish().
+   * \throw std::runtime_error naming the file and what is missing or malformed. */
+  KittiCamera(const fs::path& sequence, const Eigen::Isometry3d& T_camera0_lidar,
+              const fs::path& rawlog)
+      : m_source(sequence / "image_2"), m_target(imagesOf(rawlog)) {
+    const Matrix34 P = readProjection(sequence / "calib.txt");
+    const Eigen::Matrix3d K = P.leftCols<3>();
+    // P2 = K [I | t] takes points of the first camera: the color camera sees them shifted by t.
+    const Eigen::Isometry3d T_camera2_lidar =
+        Eigen::Translation3d(K.inverse() * P.col(3)) * T_camera0_lidar;
+    m_observation.sensorLabel = "image_2";
+    m_observation.cameraPose =
+        mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_camera2_lidar.inverse().matrix()));
+    m_observation.cameraParams.setIntrinsicParamsFromValues(K(0, 0), K(1, 1), K(0, 2), K(1, 2));
   }
-}
+
+  /** The image of this name. \throw std::runtime_error naming a file that is missing or no image.
+   */
+  const mrpt::obs::CObservationImage& observe(const std::string& name,
+                                              mrpt::Clock::time_point time) {
+    const fs::path file = m_source / (name + ".png");
+    const cv::Mat image = labeled_cloud::readImageFile(file, labeled_cloud::ImageKinds::All);
+    m_names.push_back(file.filename().string());
+    fs::copy_file(file, m_target.staged(m_names.back()), fs::copy_options::overwrite_existing);
+    m_observation.timestamp = time;
+    m_observation.cameraParams.ncols = static_cast<unsigned>(image.cols);
+    m_observation.cameraParams.nrows = static_cast<unsigned>(image.rows);
+    m_observation.image.setExternalStorage(m_names.back());
+    return m_observation;
+  }
+  /** Puts the images that were observed beside the rawlog. \throw std::runtime_error naming one */
+  void finish() { m_target.commit(m_names); }
+
+ private:
+  fs::path m_source;
+  strict_files::OutputFolder m_target;
+  std::vector<std::string> m_names;
+  mrpt::obs::CObservationImage m_observation;  ///< the last one
+};
 
 /** `Tr` of calib.txt: T_camera_lidar. */
 Eigen::Isometry3d readLidarToCamera(const fs::path& file) {
@@ -151,13 +132,22 @@ std::string sixDigits(std::size_t number) {
   return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
 }
 
+/** SemanticKITTI's poses, or KITTI's own: sequences/00 has poses/00.txt. */
+fs::path posesOf(const fs::path& sequence) {
+  const fs::path folder = fs::weakly_canonical(sequence);
+  const fs::path kittis =
+      folder.parent_path().parent_path() / "poses" / (folder.filename().string() + ".txt");
+  const fs::path file = sequence / "poses.txt";
+  return !fs::exists(file) && fs::exists(kittis) ? kittis : file;
+}
+
 }  // namespace
 
 Summary convertSemanticKitti(const fs::path& sequence, const Conversion& conversion) {
   const ClassTable table =
       conversion.labels ? semantic_types::loadClassTable(conversion.classes) : ClassTable();
   const Eigen::Isometry3d Tr = readLidarToCamera(sequence / "calib.txt");
-  const auto lines = readLines(sequence / "poses.txt");
+  const auto lines = readLines(posesOf(sequence));
   const auto times = readLines(sequence / "times.txt");
   if (lines.size() != times.size())
     throw std::runtime_error((sequence / "times.txt").string() + ": " +
@@ -168,7 +158,7 @@ Summary convertSemanticKitti(const fs::path& sequence, const Conversion& convers
   if (conversion.images) camera.emplace(sequence, Tr, conversion.output);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (!output.wants(i, lines.size())) continue;
-    const auto time = timeOf(times[i]);
+    const auto time = timeOf(numbersOf(times[i], 1)[0], times[i]);
     const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poses::poseOfMatrix(lines[i]) * Tr;
     const std::string name = sixDigits(i);
     output.writePose(time, mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_map_lidar.matrix())));

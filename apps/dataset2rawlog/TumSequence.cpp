@@ -46,12 +46,6 @@ struct DepthCamera {
   double depthFactor = 0;
 };
 
-void checkTime(double seconds, const TextLine& line) try {
-  labeled_cloud::timeOfSeconds(seconds);
-} catch (const std::invalid_argument& e) {
-  throw std::runtime_error(line.where + ": " + e.what());
-}
-
 /** Reads "time file" lines; the files are relative to the list's folder.
  * \throw std::runtime_error naming file and line. */
 ImageList readImageList(const fs::path& list) {
@@ -63,7 +57,7 @@ ImageList readImageList(const fs::path& list) {
     std::string file;
     if (!(stream >> time >> file))
       throw std::runtime_error(line.where + ": expected 'time file', found '" + line.text + "'");
-    checkTime(time, line);
+    timeOf(time, line);
     images[time] = list.parent_path() / file;
   }
   if (images.empty()) throw std::runtime_error(list.string() + ": no image in this list");
@@ -87,7 +81,9 @@ std::optional<fs::path> nearest(const ImageList& images, double time) {
 /** Reads camera.ini: MRPT's section [CAMERA_PARAMS] and in it depth_factor.
  * \throw std::runtime_error naming the file and what is missing. */
 DepthCamera readCamera(const fs::path& file) try {
-  if (!fs::is_regular_file(file)) throw std::runtime_error("cannot be opened");
+  if (!fs::is_regular_file(file))
+    throw std::runtime_error(
+        "cannot be opened; it has the camera's fx, fy, cx, cy and depth_factor");
   const mrpt::config::CConfigFile config(file.string());
   DepthCamera camera;
   camera.intrinsics.loadFromConfigFile("CAMERA_PARAMS", config);
@@ -130,57 +126,40 @@ CPose3D opticalFromForward() {
   return -CPose3D(0, 0, 0, DEG2RAD(-90.0), 0, DEG2RAD(-90.0));
 }
 
-class TumConverter {
- public:
-  TumConverter(const fs::path& folder, const Conversion& conversion)
-      : m_conversion(conversion),
-        m_camera(readCamera(folder / "camera.ini")),
-        m_depth(readImageList(folder / "depth.txt")),
-        m_trajectory(
-            labeled_cloud::loadTumTrajectory(folder / "groundtruth.txt", {kTimeTolerance, 1.0})) {
-    if (conversion.labels) m_labels = readImageList(folder / "label.txt");
-    if (fs::exists(folder / "rgb.txt")) m_color = readImageList(folder / "rgb.txt");
-    if (conversion.labels || !conversion.classes.empty())
-      m_table = semantic_types::loadClassTable(conversion.classes);
-  }
-
-  Summary run() {
-    // Colors must stay what they were: a network, or a palette, may depend on them.
-    mrpt_compat::writeImagesWithoutLoss();
-    Output output(m_conversion, m_table);
-    std::size_t frame = 0;
-    for (const auto& [time, file] : m_depth)
-      if (output.wants(frame++, m_depth.size())) writeFrame(time, file, output);
-    return output.finish();
-  }
-
- private:
-  void writeFrame(double seconds, const fs::path& depthFile, Output& output) {
-    const auto time = mrpt::Clock::fromDouble(seconds);
-    const auto T_world_optical = m_trajectory.at(time);
-    const auto labelFile = nearest(m_labels, seconds);
-    if (!T_world_optical || (!m_labels.empty() && !labelFile)) return output.skip();
-
-    CObservation3DRangeScan scan = readDepth(depthFile, m_camera);
-    scan.timestamp = time;
-    if (const auto color = nearest(m_color, seconds)) addColor(*color, scan);
-    output.writePose(time, *T_world_optical + opticalFromForward());
-    std::optional<LabelImage> labels;
-    if (labelFile) labels = labeled_cloud::readLabelImage(*labelFile, m_table);
-    output.writeDepth(scan, std::move(labels));
-  }
-
-  const Conversion& m_conversion;
-  DepthCamera m_camera;
-  ImageList m_depth, m_color, m_labels;
-  labeled_cloud::Trajectory m_trajectory;
-  ClassTable m_table;
-};
-
 }  // namespace
 
 Summary convertTumSequence(const fs::path& folder, const Conversion& conversion) {
-  return TumConverter(folder, conversion).run();
+  const DepthCamera camera = readCamera(folder / "camera.ini");
+  const ImageList depth = readImageList(folder / "depth.txt");
+  const auto trajectory =
+      labeled_cloud::loadTumTrajectory(folder / "groundtruth.txt", {kTimeTolerance, 1.0});
+  ImageList color, labels;
+  ClassTable table;
+  if (conversion.labels) labels = readImageList(folder / "label.txt");
+  if (fs::exists(folder / "rgb.txt")) color = readImageList(folder / "rgb.txt");
+  if (!conversion.classes.empty()) table = semantic_types::loadClassTable(conversion.classes);
+  // Colors must stay what they were: a network, or a palette, may depend on them.
+  mrpt_compat::writeImagesWithoutLoss();
+  Output output(conversion, table);
+  std::size_t frame = 0;
+  for (const auto& [seconds, file] : depth) {
+    if (!output.wants(frame++, depth.size())) continue;
+    const auto time = mrpt::Clock::fromDouble(seconds);
+    const auto T_world_optical = trajectory.at(time);
+    const auto labelFile = nearest(labels, seconds);
+    if (!T_world_optical || (conversion.labels && !labelFile)) {
+      output.skip();
+      continue;
+    }
+    CObservation3DRangeScan scan = readDepth(file, camera);
+    scan.timestamp = time;
+    if (const auto image = nearest(color, seconds)) addColor(*image, scan);
+    output.writePose(time, *T_world_optical + opticalFromForward());
+    std::optional<LabelImage> pixels;
+    if (labelFile) pixels = labeled_cloud::readLabelImage(*labelFile, table);
+    output.writeDepth(scan, std::move(pixels));
+  }
+  return output.finish();
 }
 
 }  // namespace dataset2rawlog

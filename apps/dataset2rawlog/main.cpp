@@ -77,10 +77,11 @@ struct Cli {
   }
 
   void addTum() {
-    CLI::App* command = add("tum", "A TUM RGB-D sequence with label images", [this] {
-      requireClasses();
-      return convertTumSequence(source, conversion);
-    });
+    CLI::App* command =
+        add("tum", "A TUM RGB-D sequence, with label images or --no-labels", [this] {
+          requireClasses();
+          return convertTumSequence(source, conversion);
+        });
     addClasses(command);
     addNoLabels(command, "Depth and color only");
     command->add_option("DIR", source, "depth.txt, label.txt, groundtruth.txt ...")->required();

@@ -76,8 +76,8 @@ std::string Summary::labeledText() const {
   text << 100 * share << " % of " << conversion.points << " points have a label";
   if (withoutLabels > 0) text << "; " << withoutLabels << " of " << inserted << " scans found none";
   if (share < 0.5)
-    text << ". Warning: less than half. Are label images named by their time in seconds, does "
-            "their camera see the points, and does the class table know their ids?";
+    text << ". Warning: less than half. That is usual for one camera over a LiDAR. Otherwise see "
+            "--preview: times of label images, `fit` of the network, ids of the class table";
   return text.str();
 }
 

@@ -145,6 +145,8 @@ ClassTable classesOf(const Cli& cli, const Config& config) {
   if (!config.map.classes.empty()) return semantic_types::loadClassTable(config.map.classes);
   notes() << "Reading the labels' names" << std::endl;
   const ClassTable table = labeled_cloud::classesIn(cli.rawlogs);
+  if (table.empty() && (!cli.labels.network.empty() || !cli.labels.folders.empty()))
+    throw std::runtime_error("labels need a class table: --classes, or `classes` in --config");
   return table.empty() ? CSemanticOctoMap::occupancyOnly() : table;
 }
 

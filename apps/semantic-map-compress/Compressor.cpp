@@ -61,7 +61,8 @@ double Compressor::alphaFor(const Solution& solution, const Target& target) {
   }
   if (target.bytes) return alphaForBytes(solution, *target.bytes);
   if (target.alpha) return *target.alpha;
-  if (!solution.alpha) refuse(solution, "no alpha: expected `alpha`, --alpha, --leaves or --bytes");
+  if (!solution.alpha)
+    refuse(solution, "no alpha: expected `alpha`, --alpha, --leaves (such as 10%) or --bytes");
   return *solution.alpha;
 }
 

@@ -103,7 +103,7 @@ struct Exporter::Format {
 
 const std::vector<Exporter::Format>& Exporter::allFormats() {
   static const std::vector<Format> formats = {
-      {".ot", "OctoMap's tree, with colors of classes", &Exporter::writeOctree},
+      {".ot", "OctoMap's tree, in colors of classes", &Exporter::writeOctree},
       {".bt", "OctoMap's binary tree",
        [](Exporter& e, const fs::path& file) {
          e.stage(file, [&e](std::ostream& out) { writeBinaryOcTree(out, e.m_map); });
@@ -114,7 +114,7 @@ const std::vector<Exporter::Format>& Exporter::allFormats() {
            semantic_map::writePly(out, e.m_map, e.m_options.points);
          });
        }},
-      {".csv", "those points as a table",
+      {".csv", "the same as a table",
        [](Exporter& e, const fs::path& file) {
          e.stage(file, [&e](std::ostream& out) {
            semantic_map::writeCsv(out, e.m_map, e.m_options.points);
@@ -124,10 +124,8 @@ const std::vector<Exporter::Format>& Exporter::allFormats() {
        [](Exporter& e, const fs::path& file) {
          e.stage(file, [&e](std::ostream& out) { semantic_map::writeGridMap(out, e.grid()); });
        }},
-      {".yaml", "such a grid for ROS's map_server, with its picture beside",
-       &Exporter::writeMapServer, ".png"},
-      {".png", "classes from above, with a world file (.pgw) beside", &Exporter::writeClassMap,
-       ".pgw"},
+      {".yaml", "the same for ROS's map_server, with a .png", &Exporter::writeMapServer, ".png"},
+      {".png", "classes from above, with a world file (.pgw)", &Exporter::writeClassMap, ".pgw"},
       {".3Dscene", "MRPT's scene", &Exporter::writeScene}};
   return formats;
 }
@@ -267,24 +265,23 @@ struct Cli {
     addMemoryOption(app, memory);
     outputs
         .add(app, files, "FILE",
-             "A file to write, may be given several times; its ending says what (" +
-                 Exporter::formats() + ")")
+             "File to write, may be given several times: " + Exporter::formats())
         ->required();
-    app.add_flag("!--no-colors", options.colors,
-                 "Write an OcTree into .ot files, not a ColorOcTree");
-    app.add_flag("--free", options.points.free, "Write free leaves, too, in .ply and .csv files");
+    app.add_flag("!--no-colors", options.colors, ".ot: an OcTree without colors");
+    app.add_flag("--free", options.points.free, ".ply, .csv: free leaves, too");
     app.add_option("--max-height", options.maxHeight,
-                   "Cut .png and .3Dscene files off above this height, m");
+                   ".png, .3Dscene: nothing above this height, m");
     strict_files::OptionList list;
     options.points.smoothing.describe(list);
-    addOptions(app, list, "Neighbors, in .ply and .csv files");
-    const std::string kGrids = "2D grids, .gridmap and .yaml files";
+    addOptions(app, list, "Classes that neighbors tell (.ply, .csv)");
+    const std::string kGrids = "2D grids (.gridmap, .yaml)";
     strict_files::OptionList grid;
     options.grid.describe(grid);
     addOptions(app, grid, kGrids);
-    app.add_option("--ground", ground,
-                   "A class that is ground; may be given several times. "
-                   "Without: the lowest voxel of each column is ground")
+    app.add_option(
+           "--ground", ground,
+           "Class of the ground, may be given several times; without: the lowest voxel of each "
+           "column is ground")
         ->type_name("CLASS")
         ->allow_extra_args(false)
         ->group(kGrids);
@@ -293,16 +290,16 @@ struct Cli {
 
  private:
   void addCosts(CLI::App& app) {
-    auto* costs = app.add_option_group(
-        "Costs", "What driving costs, in .yaml files, for nav2 and map_server");
-    auto* order =
-        costs->add_option("--costs", options.costs.order,
-                          "Classes from best to worst (YAML): costs take the place of occupancy");
+    auto* costs = app.add_option_group("Costs (.yaml, for nav2 and map_server)", "");
+    auto* order = costs->add_option(
+        "--costs", options.costs.order,
+        "Classes from best to worst (YAML): write costs of driving, not occupancy");
     costs
-        ->add_option("--vehicle", options.costs.vehicle, "Its measures (YAML); none: a small robot")
+        ->add_option("--vehicle", options.costs.vehicle,
+                     "The vehicle (YAML); without: a small robot")
         ->needs(order);
     addChoice<CostMode>(
-        costs->add_option("--mode", options.costs.mode, "How the picture holds them"),
+        costs->add_option("--mode", options.costs.mode, "map_server's mode of the picture"),
         {{"trinary", CostMode::Trinary}, {"scale", CostMode::Scale}, {"raw", CostMode::Raw}})
         ->needs(order);
   }

@@ -77,6 +77,7 @@ constexpr Arrow kStart{{0, 160, 60}, 26, 2}, kGoal{{220, 30, 30}, 26, 2},
     kVertex{{0, 40, 90}, 7, 0};
 constexpr Stroke kFootprint{{20, 20, 20}, 1, 1}, kInTheWay{{200, 0, 200}, 3, 2};
 constexpr map_pictures::Color kHole{214, 204, 226};
+constexpr map_pictures::Color kUnlabeledGround{198, 222, 222};  // unlike things without a class
 
 /** \return whether some of it is of no class */
 bool drawGround(MapCanvas& canvas, const Ground& ground,
@@ -89,9 +90,10 @@ bool drawGround(MapCanvas& canvas, const Ground& ground,
       const SurfaceRange surfaces = ground.surfaces(c);
       const Surface* s = surfaces.first;
       if (surfaces.empty() || !s->drivable || s->clearance2 == 0) continue;
+      const bool isUnlabeled = s->classId == semantic_types::kNoClass;
       canvas.fillSquare({ground.centerOf(c.x), ground.centerOf(c.y)}, ground.voxelSize(),
-                        colorOf(s->classId, classes));
-      unlabeled |= s->classId == semantic_types::kNoClass;
+                        isUnlabeled ? kUnlabeledGround : colorOf(s->classId, classes));
+      unlabeled |= isUnlabeled;
     }
   return unlabeled;
 }
@@ -197,7 +199,7 @@ cv::Mat drawPlan(MapCanvas canvas, const SemanticPlanner& planner, const PlanRes
   // What hangs over the ground stays visible, too.
   canvas.drawThrough(kGroundShare,
                      [&] { unlabeled = drawGround(canvas, ground, ground.map().classes()); });
-  if (unlabeled) canvas.explain({"ground without a class", semantic_types::kColorWithoutClass});
+  if (unlabeled) canvas.explain({"ground without a class", kUnlabeledGround});
   drawHoles(canvas, ground);
   if (planner.hasRoadmap()) drawGraph(canvas, planner.roadmap());
   if (plan.found()) drawPath(canvas, plan);

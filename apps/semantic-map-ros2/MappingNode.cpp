@@ -78,6 +78,8 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
 }
 
 void MappingNode::run(const StopRequest& stop) {
+  notes() << "Waiting for scans on " << m_node.topic("points") << ", " << m_node.topic("scan")
+          << " or " << m_node.topic("depth/image") << "; Ctrl-C ends and saves" << std::endl;
   while (!stop.pending()) {
     m_queue.wait(kWait);
     while (!stop.pending() && insertNext()) serve();

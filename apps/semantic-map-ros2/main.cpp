@@ -32,8 +32,8 @@ struct Cli {
         ->required();
     app.add_option("--map", map, "Map to go on with; its frame is the frame of all poses");
     app.add_option("--copy", copy,
-                   "Makes no map, but keeps a copy of another node's compressed tree; that one's "
-                   "name: /semantic_map");
+                   "Make no map, but keep a copy of this node's compressed tree: /semantic_map")
+        ->type_name("NAME");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
     app.footer("As ROS has it: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
   }
@@ -74,7 +74,6 @@ int run(const Cli& cli, const ros2::Arguments& arguments) {
     saveTree(map, cli.output.string());
     notes() << cli.output.string() << ": saved" << std::endl;
   });
-  notes() << "Waiting for scans; Ctrl-C ends and saves" << std::endl;
   node.run(stop);
   node.saySummary();
   if (node.scans() == 0) throw std::runtime_error("no scan came: there is no map to save");

@@ -168,6 +168,22 @@ TEST_F(SemanticKitti, missingFilesAreNamed) {
   }
 }
 
+TEST_F(SemanticKitti, posesMayBeInKittisOwnFolder) {
+  writeSmallKitti(folder);
+  const ClassTable table = loadClassTable(folder / "classes.yaml");
+  convertAndRead(kittiArguments(folder), folder / "a.rawlog", table);
+  const fs::path sequence = folder / "sequences/07";
+  fs::create_directories(sequence);
+  fs::create_directories(folder / "poses");
+  for (const char* part : {"velodyne", "labels", "calib.txt", "times.txt"})
+    fs::rename(folder / part, sequence / part);
+  fs::rename(folder / "poses.txt", folder / "poses/07.txt");
+  convertAndRead(
+      "semantic-kitti " + quoted(sequence) + " --classes " + quoted(folder / "classes.yaml"),
+      folder / "b.rawlog", table);
+  EXPECT_EQ(folder.read("a.rawlog"), folder.read("b.rawlog"));
+}
+
 TEST_F(SemanticKitti, scansOfRealStreetsFallIntoPlaceAndOnlyWithTheCalibration) {
   SKIP_WITHOUT_DATA("semantic_kitti");
   const ClassTable table = loadClassTable(shippedTable("semantic_kitti.yaml"));

@@ -48,6 +48,14 @@ TEST_F(CameraMapping, tellsTheShareOfLabeledPointsAndWarnsBelowAHalf) {
   EXPECT_TRUE(contains(misnamed.output, "Warning: less than half")) << misnamed.output;
 }
 
+TEST_F(CameraMapping, labelImagesNeedAClassTable) {
+  const ProgramRun refused = runProgram(
+      "rawlog2semantic-map",
+      {path("camera.rawlog"), "--labels", path("labels"), "--output", path("without-classes")});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_TRUE(contains(refused.errors, "labels need a class table: --classes")) << refused.errors;
+}
+
 TEST_F(CameraMapping, theIniFileMayCalibrateTheCamera) {
   auto uncalibrated = picture(10.01);
   uncalibrated.cameraParams = {};

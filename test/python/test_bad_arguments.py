@@ -45,8 +45,8 @@ BAD_LABELS = [
     ([None] * 4, "labels: .*object"),
 ]
 BAD_POSES = [
-    (np.eye(3), r"T_map_sensor: .* of shape \(3, 3\)"),
-    (np.eye(4)[:3], "T_map_sensor: .*3 rows"),
+    (np.eye(3), r"T_map_sensor: expected 4 x 4 .* of shape \(3, 3\)"),
+    (np.eye(4)[:3], r"T_map_sensor: expected 4 x 4 real numbers, got float64 of shape \(3, 4\)"),
     (np.diag([1, 1, 1, NAN]), "T_map_sensor: nan in row 3"),
     (np.diag([1, INF, 1, 1]), "T_map_sensor: inf in row 1"),
     (np.diag([1, 1, -1, 1]), "no rotation"),

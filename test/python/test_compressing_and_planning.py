@@ -1,5 +1,6 @@
 """Abstractions and plans are those of the programs."""
 import json
+import re
 
 import numpy as np
 import pytest
@@ -106,3 +107,23 @@ def test_why_there_is_no_plan_is_said():
     assert grown.plan((-6, 6, 0), (6, 0, 0), ["road"]).status == "start forbidden"
     with pytest.raises(RuntimeError, match="nothing was planned"):
         grown.planner(ORDER).replan((0, 0, 0))
+
+
+def test_what_is_printed_says_what_it_is():
+    grown = map_of_yard()
+    said = r"<Map: voxels of 0.25 m, 3 classes \(road, grass, wall\), (\d+) leaves, \d+ kB, x .* to .*, y .*, z .* m>"
+    assert int(re.fullmatch(said, repr(grown)).group(1)) == len(grown)
+    assert repr(semantic_octree.Map(0.1, list("abcd"))) == "<Map: voxels of 0.1 m, 4 classes (a, b, c, ...), empty>"
+    plan = grown.plan((-6, 0, 0), (6, -6, -np.pi / 2), ORDER)
+    assert repr(plan).startswith(f"<Plan of {plan.length:.1f} m, price {plan.price:.1f} m: ")
+    assert f"{plan.length_per_class['grass']:.1f} m grass" in repr(plan)
+    assert repr(grown.plan((50, 0, 0), (6, 0, 0), ORDER)).startswith("<Plan: no path: the start (50, 0)")
+    first = grown.abstraction({"road": 1.0, ("grass", "wall"): -0.5})
+    assert repr(first) == f"<Abstraction: {len(first.leaves())} of {len(grown)} leaves, alpha 0.002, road 1, grass+wall -0.5>"
+    grown.abstraction({"road": 1.0})
+    assert "replaced" in repr(first)
+
+
+def test_a_name_that_is_nearly_a_class_is_asked_about():
+    with pytest.raises(ValueError, match="no class 'raod'; did you mean 'road'"):
+        map_of_yard().plan((0, 0, 0), (1, 0, 0), ["raod"])

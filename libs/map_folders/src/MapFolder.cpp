@@ -288,10 +288,9 @@ using strict_files::above;
 using strict_files::atLeast;
 
 void MapFolderOptions::describe(strict_files::OptionList& list) {
-  list.add("memory", memory, "MB", atLeast(0),
-           "of tiles that are kept in memory; what one scan needs is always taken");
+  list.add("memory", memory, "MB", atLeast(0), "for tiles; a scan takes what it needs beyond");
   list.add("tile_size", tileSize, "m", above(0),
-           "edge of a new folder's tiles; the next smaller power of two voxels, 8 at least");
+           "edge of a new folder's tiles, rounded down to 8, 16, 32 ... voxels");
 }
 
 void MapFolderOptions::validate() const { strict_files::checkOptions(*this, "MapFolderOptions"); }

@@ -83,7 +83,7 @@ void add(const SemanticOcTree::Belief& belief, double weight, std::vector<double
 
 void SmoothingOptions::describe(strict_files::OptionList& list) {
   list.add("neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
-           "what a voxel across a face tells about a voxel's class, beside 1 for itself; 0: "
+           "how much a voxel across a face counts for a voxel's class, beside 1 for itself; 0: "
            "nothing. 0.4 sees through 30 % of wrong labels, less keeps smaller things");
 }
 

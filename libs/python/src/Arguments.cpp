@@ -118,13 +118,15 @@ std::string textOf(const py::handle& value) {
 
 }  // namespace
 
-Rows::Rows(const py::object& argument, std::string name, py::ssize_t columns)
+Rows::Rows(const py::object& argument, std::string name, py::ssize_t columns,
+           std::optional<py::ssize_t> rows)
     : m_name(std::move(name)), m_array(arrayOfArgument(argument, m_name)) {
-  const bool fits = m_array.ndim() == 2 && m_array.shape(1) == columns;
+  const bool fits = m_array.ndim() == 2 && m_array.shape(1) == columns &&
+                    m_array.shape(0) == rows.value_or(m_array.shape(0));
   if (!fits || std::string("fiu").find(m_array.dtype().kind()) == std::string::npos)
-    throw py::value_error(m_name + ": expected N x " + std::to_string(columns) +
-                          " real numbers, got " + typeOf(m_array) + " of shape " +
-                          shapeOf(m_array));
+    throw py::value_error(m_name + ": expected " + (rows ? std::to_string(*rows) : "N") + " x " +
+                          std::to_string(columns) + " real numbers, got " + typeOf(m_array) +
+                          " of shape " + shapeOf(m_array));
   constexpr std::size_t kBytes = 64;  // of what becomes of a row
   if (static_cast<std::size_t>(m_array.shape(0)) > strict_files::availableMemory() / kBytes)
     throw py::value_error(m_name + ": " + std::to_string(m_array.shape(0)) +
@@ -165,10 +167,7 @@ Eigen::Vector3d vectorOf(const py::object& argument, const std::string& name) {
 Eigen::Isometry3d poseOf(const py::object& argument, const std::string& name) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   if (argument.is_none()) return T;
-  const Rows rows(argument, name, 4);
-  if (rows.size() != 4)
-    throw py::value_error(name + ": expected 4 x 4 numbers, got " + std::to_string(rows.size()) +
-                          " rows");
+  const Rows rows(argument, name, 4, 4);
   rows.checkFinite();
   rows.visit([&T](const auto& at) {
     for (int i = 0; i < 4; ++i)
@@ -202,6 +201,14 @@ void addLabels(LabeledCloud& cloud, const py::object& argument, int numClasses) 
 
 bool isPath(const py::handle& argument) {
   return py::isinstance<py::str>(argument) || py::hasattr(argument, "__fspath__");
+}
+
+void refuseClass(const std::string& argument, const std::string& name, const ClassTable& classes) {
+  std::vector<std::string> known;
+  for (int id = 1; id <= classes.size(); ++id)
+    known.push_back(classes.name(static_cast<ClassId>(id)));
+  throw py::value_error(argument + ": the map has no class '" + name + "'" +
+                        strict_files::didYouMean(name, known));
 }
 
 ClassTable classTableOf(const py::object& argument) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +36,8 @@ struct ArrayView {
 class Rows {
  public:
   /** \throw py::value_error naming the argument, what it is, and what was expected. */
-  Rows(const py::object& argument, std::string name, py::ssize_t columns);
+  Rows(const py::object& argument, std::string name, py::ssize_t columns,
+       std::optional<py::ssize_t> rows = {});
 
   py::ssize_t size() const { return m_array.shape(0); }
   /** Calls use(an ArrayView). */
@@ -75,6 +77,9 @@ void addLabels(semantic_types::LabeledCloud& cloud, const py::object& labels, in
 /** A file of classes, names, or names with their colors. \throw py::value_error */
 semantic_types::ClassTable classTableOf(const py::object& argument);
 bool isPath(const py::handle& argument);
+/** Refuses a name that is none of the classes'. */
+[[noreturn]] void refuseClass(const std::string& argument, const std::string& name,
+                              const semantic_types::ClassTable& classes);
 
 /** Sets options by the names that they have in files.
  * \throw py::type_error naming one that there is not \throw py::value_error naming option and value

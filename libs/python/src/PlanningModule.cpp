@@ -5,9 +5,12 @@
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <filesystem>
+#include <iomanip>
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <utility>
 #include <vector>
 
 #include "Arguments.h"
@@ -30,7 +33,7 @@ colored_graph::GraphClass groundNamed(const py::handle& name, const ClassTable& 
   const auto text = py::str(name).cast<std::string>();
   if (const auto id = classes.find(text)) return *id;
   if (text == semantic_planning::kUnknownGround) return semantic_types::kNoClass;
-  throw py::value_error("order: the map has no class '" + text + "'");
+  refuseClass("order", text, classes);
 }
 
 ClassOrder orderOf(const py::object& argument, const std::optional<std::vector<double>>& rates,
@@ -90,6 +93,19 @@ struct Plan {
                       : classes.name(static_cast<semantic_types::ClassId>(id))] =
           result.lengthPerClass[id];
     return lengths;
+  }
+  std::string text() const {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1);
+    if (!result.found()) {
+      text << "<Plan: no path: " << result.reason;
+    } else {
+      text << "<Plan of " << result.length << " m, price " << result.price << " m";
+      const char* before = ": ";
+      for (const auto& [name, length] : lengthPerClass())
+        if (length > 0) text << std::exchange(before, ", ") << length << " m " << name;
+    }
+    return text.str() + ">";
   }
 };
 
@@ -154,6 +170,7 @@ void addPlanning(py::module_& module, MapClass& map) {
       .def_property_readonly(
           "found", [](const Plan& p) { return p.result.found(); }, "Whether there is a path.")
       .def("__bool__", [](const Plan& p) { return p.result.found(); })
+      .def("__repr__", &Plan::text)
       .def_property_readonly(
           "status", [](const Plan& p) { return nameOf(p.result.status); },
           "In a word or two: \"found\", \"start off ground\", ...")

@@ -1,8 +1,11 @@
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "Arguments.h"
 #include "SharedMap.h"
@@ -109,7 +112,11 @@ py::array_t<LeafRow> leaves(const SharedMap& map, const py::object& low, const p
     return arrayOf(map.read([](const SemanticOcTree& tree) { return leavesOf(tree); }));
   if (low.is_none() || high.is_none()) throw py::value_error("low, high: both are needed, or none");
   const Eigen::Vector3d from = vectorOf(low, "low"), to = vectorOf(high, "high");
-  if ((from.array() > to.array()).any()) throw py::value_error("low: it is above high");
+  if ((from.array() > to.array()).any()) {
+    std::ostringstream text;
+    text << "low (" << from.transpose() << ") is above high (" << to.transpose() << ")";
+    throw py::value_error(text.str());
+  }
   return arrayOf(map.read([&](const SemanticOcTree& tree) { return leavesOf(tree, from, to); }));
 }
 
@@ -122,6 +129,29 @@ py::object bounds(const SharedMap& map) {
   });
   if (isEmpty) return py::none();
   return py::make_tuple(py::array_t<double>(3, low.data()), py::array_t<double>(3, high.data()));
+}
+
+std::string summaryOf(const SharedMap& map) {
+  return map.read([](const SemanticOcTree& tree) {
+    std::string classes;
+    constexpr int kShown = 3;
+    for (int id = 1; id <= std::min(tree.numClasses(), kShown); ++id)
+      classes +=
+          (id > 1 ? ", " : "") + tree.classes().name(static_cast<semantic_types::ClassId>(id));
+    if (tree.numClasses() > kShown) classes += ", ...";
+    std::string text = "<Map: voxels of " + strict_files::textOf(tree.getResolution()) + " m, " +
+                       std::to_string(tree.numClasses()) + " classes (" + classes + "), ";
+    if (tree.empty()) return text + "empty>";
+    Eigen::Array3d low, high;
+    tree.getMetricMin(low.x(), low.y(), low.z());
+    tree.getMetricMax(high.x(), high.y(), high.z());
+    text += std::to_string(tree.getNumLeafNodes()) + " leaves, " +
+            strict_files::sizeText(tree.memoryUsage());
+    for (int i = 0; i < 3; ++i)
+      text += std::string(", ") + "xyz"[i] + " " + strict_files::textOf(low[i]) + " to " +
+              strict_files::textOf(high[i]);
+    return text + " m>";
+  });
 }
 
 py::array_t<std::uint8_t> colors(const SharedMap& map) {
@@ -219,10 +249,7 @@ Returns two arrays of 3 float64; None if the map is empty.)")
              return m.read([](const SemanticOcTree& tree) { return tree.getNumLeafNodes(); });
            })
       .def(py::self == py::self)
-      .def("__repr__", [](const SharedMap& m) {
-        return "<semantic_octree.Map of " + std::to_string(m.numClasses()) +
-               " classes, voxels of " + strict_files::textOf(m.resolution()) + " m>";
-      });
+      .def("__repr__", &summaryOf);
   map.attr("__hash__") = py::none();
 }
 

@@ -235,9 +235,9 @@ class Band {
 }  // namespace
 
 void GridOptions::describe(strict_files::OptionList& list) {
-  list.add("low", low, "m", "what lies that far above the ground obstructs");
-  list.add("high", high, "m", "what lies above this height does not, more than low");
-  list.add("floor", floor, "m", strict_files::Range(), "height of a ground that is flat");
+  list.add("low", low, "m", "lowest obstacle above the ground");
+  list.add("high", high, "m", "highest obstacle above the ground, more than low");
+  list.add("floor", floor, "m", strict_files::Range(), "height of the ground, if it is flat");
 }
 
 void GridOptions::validate() const {

@@ -186,9 +186,9 @@ std::vector<Column> Ground::tiles() const {
 void GroundOptions::describe(strict_files::OptionList& list) {
   const strict_files::Range gap = strict_files::between(0, 20);
   list.add("fill_gap", fillGap, "m", gap,
-           "holes in the ground up to this get their border's class");
+           "widest hole in the ground that is filled, with the class of its border");
   list.add("keep_off", keepOff, "",
-           "the whole footprint keeps off forbidden classes, not only the wheels");
+           "no part of the footprint over forbidden classes; otherwise no wheel");
 }
 
 void GroundOptions::validate() const { strict_files::checkOptions(*this, "GroundOptions"); }

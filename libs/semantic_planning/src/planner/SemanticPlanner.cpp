@@ -11,9 +11,12 @@ using semantic_octree::ReadLock;
 
 void PlannerOptions::describe(strict_files::OptionList& list) {
   roadmap.describe(list);
-  list.add("reading", reading.kind, "", "what of a voxel's classes counts");
-  list.add("shorten", shorten, "", "look for the path of least price, not in the graph only");
-  list.add("strict", strict, "", "classes come before length, whatever the order's rates");
+  list.add(
+      "reading", reading.kind, "",
+      "class of a voxel: the likeliest, each by its probability, or the worst that is probable");
+  list.add("shorten", shorten, "",
+           "look for the path of least price; otherwise for the best one in the graph");
+  list.add("strict", strict, "", "as if all rates of the order were inf: classes before length");
   ground.describe(list);
 }
 

@@ -256,10 +256,12 @@ bool isOfTree(GraphKind kind) { return kind == GraphKind::Compressed || kind == 
 void RoadmapOptions::describe(strict_files::OptionList& list) {
   strict_files::Range buffers = atLeast(0);
   buffers.withInfinity = true;
-  list.add("graph", kind, "", "where the graph's vertices come from");
-  list.add("vertices", vertices, "",
-           "how many; more: better paths, more time; of halton, draws; 0: all that the map offers");
-  list.add("buffer", buffer, "m", buffers, "vertices lie this near to the line from start to goal");
+  list.add("graph", kind, "",
+           "vertices of the graph: cells of the compressed tree, leaves of the map, N draws of a "
+           "Halton sequence, draws until N are on drivable ground, or a grid of the ground");
+  list.add("vertices", vertices, "", "N of them; 0: all that the map has");
+  list.add("buffer", buffer, "m", buffers,
+           "distance of vertices from the line from start to goal, at most");
 }
 
 void RoadmapOptions::validate() const { strict_files::checkOptions(*this, "RoadmapOptions"); }
