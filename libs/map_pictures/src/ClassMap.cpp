@@ -10,7 +10,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "HighestCells.h"
 #include "MapCells.h"
 
 namespace map_pictures {

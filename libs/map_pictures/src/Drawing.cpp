@@ -10,7 +10,7 @@
 #include <numeric>
 #include <optional>
 
-#include "HighestCells.h"
+#include "MapCells.h"
 
 namespace map_pictures {
 namespace {

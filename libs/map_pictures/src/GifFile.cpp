@@ -12,25 +12,6 @@
 namespace map_pictures {
 namespace {
 
-/** At most 63 colors that stand for all of a picture, found by median cut. */
-class GifPalette {
- public:
-  /** \param picture BGR \param mask 8 bit, of its size: pixels that count */
-  GifPalette(const cv::Mat& picture, const cv::Mat& mask);
-
-  /** BGR. */
-  const std::vector<cv::Vec3b>& colors() const { return m_colors; }
-  /** Which of the colors stands for one that was in the picture. */
-  std::uint8_t indexOf(const cv::Vec3b& color) const { return m_index[cellOf(color)]; }
-
- private:
-  /** Colors that differ in the last 3 bits of a channel only are one. */
-  static int cellOf(const cv::Vec3b& c) { return c[0] >> 3 << 10 | c[1] >> 3 << 5 | c[2] >> 3; }
-
-  std::vector<cv::Vec3b> m_colors;
-  std::vector<std::uint8_t> m_index;
-};
-
 constexpr std::size_t kMostColors = 63;
 
 /** Pixels of nearly one color. */
@@ -94,25 +75,41 @@ cv::Vec3b meanOf(const Box& box) {
   return sum / count;
 }
 
-GifPalette::GifPalette(const cv::Mat& picture, const cv::Mat& mask) : m_index(1 << 15, 0) {
-  std::vector<Cell> all(1 << 15);
-  for (int row = 0; row < picture.rows; ++row)
-    for (int col = 0; col < picture.cols; ++col) {
-      if (!mask.at<std::uint8_t>(row, col)) continue;
-      const auto& color = picture.at<cv::Vec3b>(row, col);
-      Cell& cell = all[cellOf(color)];
-      cell.index = cellOf(color);
-      cell.sum += cv::Vec3d(color), ++cell.count;
+/** At most 63 colors that stand for all of a picture, found by median cut. */
+class GifPalette {
+ public:
+  /** \param picture BGR \param mask 8 bit, of its size: pixels that count */
+  GifPalette(const cv::Mat& picture, const cv::Mat& mask) : m_index(1 << 15, 0) {
+    std::vector<Cell> all(1 << 15);
+    for (int row = 0; row < picture.rows; ++row)
+      for (int col = 0; col < picture.cols; ++col) {
+        if (!mask.at<std::uint8_t>(row, col)) continue;
+        const auto& color = picture.at<cv::Vec3b>(row, col);
+        Cell& cell = all[cellOf(color)];
+        cell.index = cellOf(color);
+        cell.sum += cv::Vec3d(color), ++cell.count;
+      }
+    all.erase(std::remove_if(all.begin(), all.end(), [](const Cell& cell) { return !cell.count; }),
+              all.end());
+    for (const Box& box : boxesOf(all)) {
+      for (auto cell = box.begin; cell != box.end; ++cell)
+        m_index[cell->index] = std::uint8_t(m_colors.size());
+      m_colors.push_back(meanOf(box));
     }
-  Cells cells;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(cells),
-               [](const Cell& cell) { return cell.count > 0; });
-  for (const Box& box : boxesOf(cells)) {
-    for (auto cell = box.begin; cell != box.end; ++cell)
-      m_index[cell->index] = std::uint8_t(m_colors.size());
-    m_colors.push_back(meanOf(box));
   }
-}
+
+  /** BGR. */
+  const std::vector<cv::Vec3b>& colors() const { return m_colors; }
+  /** Which of the colors stands for one that was in the picture. */
+  std::uint8_t indexOf(const cv::Vec3b& color) const { return m_index[cellOf(color)]; }
+
+ private:
+  /** Colors that differ in the last 3 bits of a channel only are one. */
+  static int cellOf(const cv::Vec3b& c) { return c[0] >> 3 << 10 | c[1] >> 3 << 5 | c[2] >> 3; }
+
+  std::vector<cv::Vec3b> m_colors;
+  std::vector<std::uint8_t> m_index;
+};
 
 constexpr int kUnchanged = 0;  ///< index of the transparent color; those of the palette follow
 

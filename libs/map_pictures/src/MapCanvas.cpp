@@ -11,7 +11,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "HighestCells.h"
 #include "MapCells.h"
 
 namespace map_pictures {
