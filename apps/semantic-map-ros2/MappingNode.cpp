@@ -50,25 +50,10 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
       m_scanClock(parameters.insertion.maxGap),
       m_sensors(m_node, m_parameters.node, map.classes(), parameters.insertion.conversion, m_clock,
                 m_transforms, m_queue, m_complaints),
-      m_hearsGoal(m_node, "goal_pose", {true, false, 1},
-                  [this](auto message) {
-                    const std::lock_guard<std::mutex> lock(m_mutex);
-                    m_newGoal = message;
-                  }),
-      m_hearsInitialPose(m_node, "initialpose", {true, false, 1},
-                         [this](auto message) {
-                           const std::lock_guard<std::mutex> lock(m_mutex);
-                           m_newPose = message;
-                         }),
-      m_hearsExploring(m_node, "~/explore", {true, false, 1},
-                       [this](auto message) {
-                         const std::lock_guard<std::mutex> lock(m_mutex);
-                         m_newExploring = message;
-                       }),
-      m_hearsSave(m_node, "~/save", {true, false, 1}, [this](auto) {
-        const std::lock_guard<std::mutex> lock(m_mutex);
-        m_isToSave = true;
-      }) {
+      m_goals(m_node, "goal_pose"),
+      m_initialPoses(m_node, "initialpose"),
+      m_explorings(m_node, "~/explore"),
+      m_saves(m_node, "~/save") {
   const NodeOptions& node = m_parameters.node;
   if (node.order.empty()) return;
   const auto order = semantic_planning::loadClassOrder(node.order, map.classes());
@@ -116,21 +101,10 @@ void MappingNode::look() {
 }
 
 void MappingNode::hear() {
-  std::shared_ptr<const ros2::PoseStamped> goal;
-  std::shared_ptr<const ros2::PoseWithCovarianceStamped> pose;
-  std::shared_ptr<const ros2::Bool> exploring;
-  bool isToSave;
-  {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    goal = std::exchange(m_newGoal, nullptr);
-    pose = std::exchange(m_newPose, nullptr);
-    exploring = std::exchange(m_newExploring, nullptr);
-    isToSave = std::exchange(m_isToSave, false);
-  }
-  if (goal) onGoal(*goal);
-  if (pose) onInitialPose(*pose);
-  if (exploring) onExploring(exploring->data);
-  if (isToSave) try {
+  if (const auto goal = m_goals.take()) onGoal(*goal);
+  if (const auto pose = m_initialPoses.take()) onInitialPose(*pose);
+  if (const auto exploring = m_explorings.take()) onExploring(exploring->data);
+  if (m_saves.take()) try {
       if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
       m_save();
     } catch (const std::exception& e) {

@@ -15,6 +15,22 @@
 
 namespace semantic_map_ros2 {
 
+/** The last message of a topic, for whoever looks for it now and then. */
+template <class Message>
+class Inbox {
+ public:
+  Inbox(ros2::Node& node, const std::string& topic)
+      : m_hears(node, topic, {true, false, 1}, [this](std::shared_ptr<const Message> message) {
+          std::atomic_store(&m_message, std::move(message));
+        }) {}
+  /** Null: nothing came since. */
+  std::shared_ptr<const Message> take() { return std::atomic_exchange(&m_message, {}); }
+
+ private:
+  std::shared_ptr<const Message> m_message;
+  ros2::Subscription<Message> m_hears;
+};
+
 /** The node: what sensors say goes into a map, and what is known is published. One thread, that of
  * run(), works on the map; DDS's threads fill queues. */
 class MappingNode {
@@ -76,16 +92,11 @@ class MappingNode {
   std::optional<std::chrono::steady_clock::time_point> m_endedAt;  ///< later scans do not count
   std::optional<ros2::Stamp> m_correctedAt;
 
-  std::mutex m_mutex;  ///< of what DDS's threads leave here
-  std::shared_ptr<const ros2::PoseStamped> m_newGoal;
-  std::shared_ptr<const ros2::PoseWithCovarianceStamped> m_newPose;
-  std::shared_ptr<const ros2::Bool> m_newExploring;
-  bool m_isToSave = false;
   Sensors m_sensors;
-  ros2::Subscription<ros2::PoseStamped> m_hearsGoal;
-  ros2::Subscription<ros2::PoseWithCovarianceStamped> m_hearsInitialPose;
-  ros2::Subscription<ros2::Bool> m_hearsExploring;
-  ros2::Subscription<ros2::Empty> m_hearsSave;
+  Inbox<ros2::PoseStamped> m_goals;
+  Inbox<ros2::PoseWithCovarianceStamped> m_initialPoses;
+  Inbox<ros2::Bool> m_explorings;
+  Inbox<ros2::Empty> m_saves;
 };
 
 }  // namespace semantic_map_ros2

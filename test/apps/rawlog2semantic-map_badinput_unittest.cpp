@@ -46,7 +46,9 @@ TEST_F(Rawlog2SemanticMap, whatIsNoRawlogIsCalledByItsNameWithTheCommandThatMake
   expectRefusal({"desk: is no rawlog, but a TUM RGB-D sequence; dataset2rawlog tum"}, "desk");
   folder.write("bag/a.mcap", "x");
   expectRefusal({"bag: is no rawlog, but a bag of ROS 2; dataset2rawlog rosbag2"}, "bag");
-  expectRefusal({"a.mcap: is no rawlog, but a bag of ROS 2"}, "bag/a.mcap");
+  expectRefusal({"a.mcap: is no rawlog, but a bag of ROS 2; dataset2rawlog rosbag2 ",
+                 "bag/a.mcap --classes TABLE.yaml -o a.rawlog makes a rawlog of it"},
+                "bag/a.mcap");
   folder.write("intel.log", "# CARMEN\nPARAM x y\nFLASER 180 1.0\n");
   expectRefusal({"intel.log: is no rawlog, but a log of CARMEN; dataset2rawlog carmen"},
                 "intel.log");

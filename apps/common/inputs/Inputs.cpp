@@ -37,16 +37,22 @@ void checkNoResults(const fs::path& path) {
                              meant->string() + "'?");
 }
 
-std::string makesOne(const std::string& what, const std::string& command) {
-  return what + "; dataset2rawlog " + command + " makes a rawlog of it";
+/** With the command that makes a rawlog of it. */
+std::string makesOne(const std::string& what, const std::string& kind, const fs::path& source) {
+  const fs::path path = source.has_filename() ? source : source.parent_path();
+  const std::string files = kind == "pcd" && fs::is_directory(path) ? "/*" : "";
+  const std::string classes = kind == "carmen" ? "" : " --classes TABLE.yaml";
+  return what + "; dataset2rawlog " + kind + " " + path.string() + files + classes + " -o " +
+         path.stem().string() + ".rawlog makes a rawlog of it";
 }
 
 /** Empty: may be a rawlog. */
 std::string kindOfFolder(const fs::path& folder) {
-  if (fs::exists(folder / "velodyne")) return makesOne("a KITTI sequence", "semantic-kitti");
-  if (fs::exists(folder / "depth.txt")) return makesOne("a TUM RGB-D sequence", "tum");
-  if (fileIn(folder, {".mcap", ".db3"})) return makesOne("a bag of ROS 2", "rosbag2");
-  if (fileIn(folder, {".pcd", ".ply"})) return makesOne("a folder of point clouds", "pcd");
+  if (fs::exists(folder / "velodyne"))
+    return makesOne("a KITTI sequence", "semantic-kitti", folder);
+  if (fs::exists(folder / "depth.txt")) return makesOne("a TUM RGB-D sequence", "tum", folder);
+  if (fileIn(folder, {".mcap", ".db3"})) return makesOne("a bag of ROS 2", "rosbag2", folder);
+  if (fileIn(folder, {".pcd", ".ply"})) return makesOne("a folder of point clouds", "pcd", folder);
   if (MapFolder::isAt(folder)) return "a map";
   const auto rawlog = fileIn(folder, {".rawlog"});
   return "a folder" + (rawlog ? "; did you mean '" + rawlog->string() + "'?" : "");
@@ -62,11 +68,11 @@ bool isCarmens(const fs::path& file) {
 
 std::string kindOfFile(const fs::path& file) {
   const std::string ending = file.extension();
-  if (ending == ".mcap" || ending == ".db3") return makesOne("a bag of ROS 2", "rosbag2");
-  if (ending == ".pcd" || ending == ".ply") return makesOne("a point cloud", "pcd");
+  if (ending == ".mcap" || ending == ".db3") return makesOne("a bag of ROS 2", "rosbag2", file);
+  if (ending == ".pcd" || ending == ".ply") return makesOne("a point cloud", "pcd", file);
   if (ending == ".semantic") return "a map";
   if ((ending == ".log" || ending == ".clf") && isCarmens(file))
-    return makesOne("a log of CARMEN", "carmen");
+    return makesOne("a log of CARMEN", "carmen", file);
   return {};
 }
 

@@ -160,11 +160,13 @@ class NearestFrontier : public ViewStrategy {
           m_planner.check(pose, height) == semantic_planning::PlanStatus::Found)
         nearest = View{pose, height, way, 0};
     }
+    m_isOver = !nearest;
     return nearest;
   }
   void done(const View& view) override { m_done.add(view.pose); }
   std::string conclusion() const override {
-    return "no border of what is known is left within reach; places looked from: " +
+    return (m_isOver ? "no border of what is known is left within reach; places looked from: "
+                     : "places looked from: ") +
            std::to_string(m_done.size());
   }
 
@@ -174,6 +176,7 @@ class NearestFrontier : public ViewStrategy {
   const SemanticPlanner& m_planner;
   const ExploreOptions m_options;
   DoneViews m_done;
+  bool m_isOver = false;
 };
 
 }  // namespace
