@@ -35,8 +35,10 @@ struct Cli {
 
   explicit Cli(CLI::App& app) : outputs(app) {
     inputs::addMap(app, map);
-    app.add_option("--weights", weights,
-                   "Solutions: weights of classes (YAML); without: every class counts alike");
+    app.add_option(
+        "--weights", weights,
+        "Solutions: weights of classes (YAML); without: every class counts alike, and a tenth "
+        "of the leaves is kept");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
     group->add_option("--alpha", target.alpha, "Price of detail (alpha)")
@@ -72,6 +74,13 @@ struct Cli {
       target.leaves = static_cast<std::size_t>(number);
   }
 };
+
+Target targetOf(const Cli& cli) {
+  Target target = cli.target;
+  const bool isOpen = !target.alpha && !target.leaves && !target.share && !target.bytes;
+  if (isOpen && cli.weights.empty()) target.share = 0.1;
+  return target;
+}
 
 WeightsFile weightsOf(const Cli& cli, const semantic_types::ClassTable& classes) {
   if (!cli.weights.empty()) return semantic_octree::loadWeights(cli.weights, classes);
@@ -195,7 +204,8 @@ int run(const Cli& cli) {
   std::vector<Compression> compressions;
   for (const Solution& solution : weights.solutions) {
     progress->update(2 + compressions.size(), solution.name);
-    compressions.push_back(SolutionWriter(compressor, cli.target, output, sheet).write(solution));
+    compressions.push_back(
+        SolutionWriter(compressor, targetOf(cli), output, sheet).write(solution));
   }
   times.add("solutions");
   measureOtherBatches(compressor, compressions, *progress);

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <list>
 #include <optional>
 #include <ostream>
@@ -55,202 +54,177 @@ class Exporter {
       : m_map(map), m_options(std::move(options)) {}
 
   /** What can be written: endings with a few words. */
-  static std::string formats();
+  static std::string formats() {
+    std::string text;
+    for (const Format& format : allFormats())
+      text += std::string(text.empty() ? "" : "; ") + format.ending + ": " + format.description;
+    return text;
+  }
+
   /** The file and what is written beside it.
    * \throw std::runtime_error naming the file: no format has its ending. */
-  static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& file,
-                                                    const ExportOptions& options);
+  static std::vector<fs::path> filesOf(const fs::path& file, const ExportOptions& options) {
+    std::vector<fs::path> files = {file};
+    const char* beside = formatOf(file).beside;
+    if (file.extension() == ".yaml" && !options.costs.order.empty())
+      beside = endingOf(options.costs.mode);
+    if (beside) files.push_back(fs::path(file).replace_extension(beside));
+    return files;
+  }
 
   /** Writes a file, and what belongs beside it, in the format that its ending says.
    * \throw std::exception naming the file. */
-  void write(const std::filesystem::path& file);
+  void write(const fs::path& file) {
+    try {
+      (this->*formatOf(file).write)(file);
+    } catch (const std::exception& e) {
+      const std::string message = e.what();
+      const bool named = message.find(file.stem().string() + ".") != std::string::npos;
+      throw std::runtime_error(named ? message : file.string() + ": " + message);
+    }
+  }
+
   /** \return the files. \throw std::runtime_error naming a file. */
-  std::vector<std::filesystem::path> commit();
+  std::vector<fs::path> commit() {
+    std::vector<fs::path> files;
+    for (Staged& staged : m_staged) {
+      staged.file.commit();
+      files.push_back(staged.target);
+    }
+    m_staged.clear();
+    return files;
+  }
 
  private:
-  using Writer = std::function<void(std::ostream&)>;
-  using Filler = std::function<void(const std::filesystem::path&)>;
-  struct Format;
-  static const std::vector<Format>& allFormats();
-  static const Format& formatOf(const std::filesystem::path& file);
-
-  void stage(const std::filesystem::path& file, const Writer& writer);
-  void stageFile(const std::filesystem::path& file, const Filler& fill);
-  mrpt::maps::COccupancyGridMap2D grid() const;
-  void writeOctree(const std::filesystem::path& file);
-  void writeClassMap(const std::filesystem::path& file);
-  void writeMapServer(const std::filesystem::path& file);
-  void writeCosts(const std::filesystem::path& file);
-  void writeScene(const std::filesystem::path& file);
-
+  struct Format {
+    const char* ending;
+    const char* description;
+    void (Exporter::*write)(const fs::path& file);
+    const char* beside = nullptr;  ///< ending of a second file
+  };
   struct Staged {
-    explicit Staged(const std::filesystem::path& path) : target(path), file(path) {}
-    std::filesystem::path target;
+    explicit Staged(const fs::path& path) : target(path), file(path) {}
+    fs::path target;
     strict_files::StagedFile file;
   };
+
+  static const std::vector<Format>& allFormats() {
+    static const std::vector<Format> formats = {
+        {".ot", "OctoMap's tree, in colors of classes", &Exporter::writeOctree},
+        {".bt", "OctoMap's binary tree", &Exporter::writeBinaryOctree},
+        {".ply", "points with class, probability and color", &Exporter::writePoints},
+        {".csv", "the same as a table", &Exporter::writeTable},
+        {".gridmap", "MRPT's 2D occupancy grid", &Exporter::writeGrid},
+        {".yaml", "the same for ROS's map_server, with a .png", &Exporter::writeMapServer, ".png"},
+        {".png", "classes from above, with a world file (.pgw)", &Exporter::writeClassMap, ".pgw"},
+        {".3Dscene", "MRPT's scene", &Exporter::writeScene}};
+    return formats;
+  }
+
+  static const Format& formatOf(const fs::path& file) {
+    std::string endings;
+    for (const Format& format : allFormats()) {
+      if (file.extension() == format.ending) return format;
+      endings += std::string(" ") + format.ending;
+    }
+    throw std::runtime_error(file.string() + ": the ending says no format, expected one of" +
+                             endings);
+  }
+
+  /** Where to write what becomes this file. */
+  fs::path staged(const fs::path& file) {
+    return m_staged.emplace_back(file.lexically_normal()).file.path();
+  }
+
+  template <class Writer>
+  void stage(const fs::path& file, const Writer& write) {
+    std::ofstream out(staged(file), std::ios::binary);
+    write(out);
+    out.close();
+    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  }
+
+  /** A floor at a wrong height makes obstacles of nearly everything: that is said. */
+  mrpt::maps::COccupancyGridMap2D grid() const {
+    auto grid = semantic_map::gridOf(m_map, m_options.grid);
+    constexpr double kFew = 0.1;
+    double free = 0, occupied = 0;
+    for (int y = 0; y < int(grid.getSizeY()); ++y)
+      for (int x = 0; x < int(grid.getSizeX()); ++x) {
+        const float p = grid.getCell(x, y);
+        (p > 0.5f ? free : occupied) += p == 0.5f ? 0 : 1;
+      }
+    if (m_options.grid.floor && free < kFew * occupied)
+      notes() << "Warning: " << std::lround(100 * occupied / (free + occupied))
+              << " % of the grid's known cells are obstacles. Is the ground at "
+              << *m_options.grid.floor << " m? Without --floor it is found in the map."
+              << std::endl;
+    return grid;
+  }
+
+  void writeOctree(const fs::path& file) {
+    stage(file, [this](std::ostream& out) {
+      m_options.colors ? writeColorOcTree(out, m_map) : writeOcTree(out, m_map);
+    });
+  }
+  void writeBinaryOctree(const fs::path& file) {
+    stage(file, [this](std::ostream& out) { writeBinaryOcTree(out, m_map); });
+  }
+  void writePoints(const fs::path& file) {
+    stage(file,
+          [this](std::ostream& out) { semantic_map::writePly(out, m_map, m_options.points); });
+  }
+  void writeTable(const fs::path& file) {
+    stage(file,
+          [this](std::ostream& out) { semantic_map::writeCsv(out, m_map, m_options.points); });
+  }
+  void writeGrid(const fs::path& file) {
+    stage(file, [this](std::ostream& out) { semantic_map::writeGridMap(out, grid()); });
+  }
+
+  void writeClassMap(const fs::path& file) {
+    const auto drawn = map_pictures::drawClassMap(m_map, m_options.maxHeight);
+    map_pictures::savePicture(drawn.picture, staged(file));
+    stage(fs::path(file).replace_extension(".pgw"),
+          [&drawn](std::ostream& out) { out << drawn.worldFile; });
+  }
+
+  void writeCosts(const fs::path& file) {
+    const CostOptions& costs = m_options.costs;
+    const auto order = semantic_planning::loadClassOrder(costs.order, m_map.classes());
+    const auto vehicle = costs.vehicle.empty() ? semantic_planning::VehicleOptions()
+                                               : semantic_planning::loadVehicle(costs.vehicle);
+    const fs::path picture = fs::path(file).replace_extension(endingOf(costs.mode));
+    const CostFiles files = semantic_map_export::filesOf(costGridOf(m_map, order, vehicle),
+                                                         costs.mode, picture.filename().string());
+    stage(file, [&files](std::ostream& out) { out << files.yaml; });
+    stage(picture, [&files](std::ostream& out) { out << files.picture; });
+  }
+
+  void writeMapServer(const fs::path& file) {
+    if (!m_options.costs.order.empty()) return writeCosts(file);
+    const fs::path picture = fs::path(file).replace_extension(".png");
+    const auto files = semantic_map::mapServerFiles(grid(), picture.filename().string());
+    stage(file, [&files](std::ostream& out) { out << files.yaml; });
+    stage(picture, [&files](std::ostream& out) { out << files.png; });
+  }
+
+  void writeScene(const fs::path& file) {
+    semantic_octree::SemanticOcTree copy = semantic_octree::emptyLike(m_map);
+    copyTo(copy, m_map);
+    semantic_map::CSemanticOctoMap map(std::move(copy));
+    if (m_options.maxHeight) map.renderingOptions.maxHeight = *m_options.maxHeight;
+    const auto objects = mrpt_compat::drawing::CSetOfObjects::Create();
+    map.getVisualizationInto(*objects);
+    mrpt_compat::Scene scene;
+    scene.insert(objects);
+    semantic_map::writeScene(scene, staged(file));
+  }
 
   const semantic_octree::SemanticOcTree& m_map;
   ExportOptions m_options;
   std::list<Staged> m_staged;
 };
-
-struct Exporter::Format {
-  const char* ending;
-  const char* description;
-  std::function<void(Exporter&, const fs::path&)> write;
-  const char* beside = nullptr;  ///< ending of a second file
-};
-
-const std::vector<Exporter::Format>& Exporter::allFormats() {
-  static const std::vector<Format> formats = {
-      {".ot", "OctoMap's tree, in colors of classes", &Exporter::writeOctree},
-      {".bt", "OctoMap's binary tree",
-       [](Exporter& e, const fs::path& file) {
-         e.stage(file, [&e](std::ostream& out) { writeBinaryOcTree(out, e.m_map); });
-       }},
-      {".ply", "points with class, probability and color",
-       [](Exporter& e, const fs::path& file) {
-         e.stage(file, [&e](std::ostream& out) {
-           semantic_map::writePly(out, e.m_map, e.m_options.points);
-         });
-       }},
-      {".csv", "the same as a table",
-       [](Exporter& e, const fs::path& file) {
-         e.stage(file, [&e](std::ostream& out) {
-           semantic_map::writeCsv(out, e.m_map, e.m_options.points);
-         });
-       }},
-      {".gridmap", "MRPT's 2D occupancy grid",
-       [](Exporter& e, const fs::path& file) {
-         e.stage(file, [&e](std::ostream& out) { semantic_map::writeGridMap(out, e.grid()); });
-       }},
-      {".yaml", "the same for ROS's map_server, with a .png", &Exporter::writeMapServer, ".png"},
-      {".png", "classes from above, with a world file (.pgw)", &Exporter::writeClassMap, ".pgw"},
-      {".3Dscene", "MRPT's scene", &Exporter::writeScene}};
-  return formats;
-}
-
-std::string Exporter::formats() {
-  std::string text;
-  for (const Format& format : allFormats())
-    text += std::string(text.empty() ? "" : "; ") + format.ending + ": " + format.description;
-  return text;
-}
-
-const Exporter::Format& Exporter::formatOf(const fs::path& file) {
-  std::string endings;
-  for (const Format& format : allFormats()) {
-    if (file.extension() == format.ending) return format;
-    endings += std::string(" ") + format.ending;
-  }
-  throw std::runtime_error(file.string() + ": the ending says no format, expected one of" +
-                           endings);
-}
-
-std::vector<fs::path> Exporter::filesOf(const fs::path& file, const ExportOptions& options) {
-  std::vector<fs::path> files = {file};
-  const char* beside = formatOf(file).beside;
-  if (file.extension() == ".yaml" && !options.costs.order.empty())
-    beside = endingOf(options.costs.mode);
-  if (beside) files.push_back(fs::path(file).replace_extension(beside));
-  return files;
-}
-
-void Exporter::write(const fs::path& file) {
-  try {
-    formatOf(file).write(*this, file);
-  } catch (const std::exception& e) {
-    const std::string message = e.what();
-    const bool named = message.find(file.stem().string() + ".") != std::string::npos;
-    throw std::runtime_error(named ? message : file.string() + ": " + message);
-  }
-}
-
-std::vector<fs::path> Exporter::commit() {
-  std::vector<fs::path> files;
-  for (Staged& staged : m_staged) {
-    staged.file.commit();
-    files.push_back(staged.target);
-  }
-  m_staged.clear();
-  return files;
-}
-
-void Exporter::stageFile(const fs::path& file, const Filler& fill) {
-  fill(m_staged.emplace_back(file.lexically_normal()).file.path());
-}
-
-void Exporter::stage(const fs::path& file, const Writer& writer) {
-  stageFile(file, [&](const fs::path& staged) {
-    std::ofstream out(staged, std::ios::binary);
-    writer(out);
-    out.close();
-    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
-  });
-}
-
-/** A floor at a wrong height makes obstacles of nearly everything: that is said. */
-mrpt::maps::COccupancyGridMap2D Exporter::grid() const {
-  auto grid = semantic_map::gridOf(m_map, m_options.grid);
-  constexpr double kFew = 0.1;
-  double free = 0, occupied = 0;
-  for (int y = 0; y < int(grid.getSizeY()); ++y)
-    for (int x = 0; x < int(grid.getSizeX()); ++x) {
-      const float p = grid.getCell(x, y);
-      (p > 0.5f ? free : occupied) += p == 0.5f ? 0 : 1;
-    }
-  if (m_options.grid.floor && free < kFew * occupied)
-    notes() << "Warning: " << std::lround(100 * occupied / (free + occupied))
-            << " % of the grid's known cells are obstacles. Is the ground at "
-            << *m_options.grid.floor << " m? Without --floor it is found in the map." << std::endl;
-  return grid;
-}
-
-void Exporter::writeOctree(const fs::path& file) {
-  stage(file, [this](std::ostream& out) {
-    m_options.colors ? writeColorOcTree(out, m_map) : writeOcTree(out, m_map);
-  });
-}
-
-void Exporter::writeClassMap(const fs::path& file) {
-  const auto drawn = map_pictures::drawClassMap(m_map, m_options.maxHeight);
-  stageFile(file,
-            [&drawn](const fs::path& staged) { map_pictures::savePicture(drawn.picture, staged); });
-  stage(fs::path(file).replace_extension(".pgw"),
-        [&drawn](std::ostream& out) { out << drawn.worldFile; });
-}
-
-void Exporter::writeCosts(const fs::path& file) {
-  const CostOptions& costs = m_options.costs;
-  const auto order = semantic_planning::loadClassOrder(costs.order, m_map.classes());
-  const auto vehicle = costs.vehicle.empty() ? semantic_planning::VehicleOptions()
-                                             : semantic_planning::loadVehicle(costs.vehicle);
-  const fs::path picture = fs::path(file).replace_extension(endingOf(costs.mode));
-  const CostFiles files = semantic_map_export::filesOf(costGridOf(m_map, order, vehicle),
-                                                       costs.mode, picture.filename().string());
-  stage(file, [&files](std::ostream& out) { out << files.yaml; });
-  stage(picture, [&files](std::ostream& out) { out << files.picture; });
-}
-
-void Exporter::writeMapServer(const fs::path& file) {
-  if (!m_options.costs.order.empty()) return writeCosts(file);
-  const fs::path picture = fs::path(file).replace_extension(".png");
-  const auto files = semantic_map::mapServerFiles(grid(), picture.filename().string());
-  stage(file, [&files](std::ostream& out) { out << files.yaml; });
-  stage(picture, [&files](std::ostream& out) { out << files.png; });
-}
-
-void Exporter::writeScene(const fs::path& file) {
-  semantic_octree::SemanticOcTree copy = semantic_octree::emptyLike(m_map);
-  copyTo(copy, m_map);
-  semantic_map::CSemanticOctoMap map(std::move(copy));
-  if (m_options.maxHeight) map.renderingOptions.maxHeight = *m_options.maxHeight;
-  const auto objects = mrpt_compat::drawing::CSetOfObjects::Create();
-  map.getVisualizationInto(*objects);
-  mrpt_compat::Scene scene;
-  scene.insert(objects);
-  stageFile(file, [&scene](const fs::path& staged) { semantic_map::writeScene(scene, staged); });
-}
 
 struct Cli {
   fs::path map;
