@@ -93,10 +93,11 @@ TEST(StreetCalibration, isNotWorseWithNeighborsWhateverIsWrongWithTheLabels) {
   } wrong[] = {{"07", 0, Kind::Points},       {"00", 0.15, Kind::Points}, {"07", 0.3, Kind::Points},
                {"00", 0.17, Kind::Blobs},     {"07", 0.17, Kind::Blobs},  {"00", 0.31, Kind::Blobs},
                {"07", 0.17, Kind::Persistent}};
+  const double kWeight = semantic_octree::SmoothingOptions().neighborWeight;
   for (const auto& [sequence, share, kind] : wrong) {
     const unsigned seed = sequence == std::string("00") ? 11 : 111;
     const Street street(sequence, 0.2, {}, {share, kind, seed, 19});
-    const Evaluation own = street.evaluate(street.map), seen = street.evaluate(street.map, 0.4);
+    const Evaluation own = street.evaluate(street.map), seen = street.evaluate(street.map, kWeight);
     const auto name = std::string(sequence) + ' ' + std::to_string(share);
     EXPECT_LE(seen.calibrationError(), own.calibrationError() + 0.002) << name;
     EXPECT_LE(seen.logLoss(), own.logLoss()) << name;

@@ -256,6 +256,16 @@ TEST(CompressedClasses, areThoseThatAreBelievedWhateverIsStated) {
   EXPECT_TRUE(Abstraction(before).compressedMap().filterParameters().calibration.isIdentity());
 }
 
+TEST(CompressedClasses, areStatedAsTheMapDoesWhereNoCellsAreMerged) {
+  SemanticOcTree map = smallMap();
+  const AbstractionOptions options = threeTerms(0, map.numClasses(), 1);
+  setAbstraction(map, options);
+  for (const double power : {0.25, 0.5, 1.5}) {
+    map.setCalibration({power, 0});
+    EXPECT_NEAR(Abstraction(map).compressedMap().filterParameters().calibration.power, power, 0.02);
+  }
+}
+
 namespace {
 
 /** A floor of one class in whole cells of 8 voxels' edge, and what a scan of it says: some labels

@@ -45,56 +45,78 @@ SemanticOcTreeNode labeledLeaf(const SemanticOcTree& map, const Eigen::Array3i& 
   return leaf && leaf.hasClassRecord() ? leaf : SemanticOcTreeNode();
 }
 
-/** So many pairs count as seen that tell the same, and about so many leaves are looked at. */
-constexpr double kPairsBefore = 20;
-constexpr std::size_t kMostLeaves = 1 << 18;
+/** No neighbor tells more than odds of 25: a border of two classes may lie between. */
+constexpr double kMostOfNeighbor = 3.2;  // ln 25
+/** At most about so many log-odds are kept to find out how far neighbors repeat each other. */
+constexpr std::size_t kAsked = 1 << 22;
+/** How often the search for that is halved. */
+constexpr int kHalvings = 20;
 
-/** Neighbors across a face often agree on the likeliest class, and name a second one. \return the
- * share of such pairs whose second classes are the same */
-double shareRepeated(const SemanticOcTree& map) {
-  double pairs = kPairsBefore, same = kPairsBefore;
-  const std::size_t oneIn = 1 + map.getNumLeafNodes() / kMostLeaves;
-  std::size_t number = 0;
-  for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-    if (number++ % oneIn != 0 || leaf.getDepth() != map.getTreeDepth()) continue;
-    if (!leaf->hasClassRecord() || !map.isNodeOccupied(*leaf)) continue;
-    const SemanticOcTree::Belief own = map.belief(*leaf);
-    const octomap::OcTreeKey key = leaf.getKey();
-    for (int face = 0; own.count > 1 && face < kFaces; ++face) {
-      const SemanticOcTreeNode next = labeledLeaf(
-          map, Eigen::Array3i(key[0], key[1], key[2]) + neighbors()[std::size_t(face)].offset);
-      if (!next || !map.isNodeOccupied(next)) continue;
-      const SemanticOcTree::Belief other = map.belief(next);
-      if (other.count < 2 || other.ids[0] != own.ids[0]) continue;
-      ++pairs;
-      same += other.ids[1] == own.ids[1];
-    }
-  }
-  return same / pairs;
-}
-
-void add(const SemanticOcTree::Belief& belief, double weight, std::vector<double>& logs) {
-  for (double& x : logs) x += weight * belief.rest;
-  for (int i = 0; i < belief.count; ++i)
-    logs[belief.ids[i] - 1] += weight * (belief.logOdds[i] - belief.rest);
+/** Adds what a voxel tells of classes, up to a constant, and nothing below -most.
+ * \return the share of it that counts */
+double add(const SemanticOcTree::Belief& belief, double weight, double most,
+           std::vector<double>& logs) {
+  const int count = belief.count;
+  const bool isRestThere = belief.unnamed(static_cast<int>(logs.size())) > 0;
+  const double top = isRestThere ? std::max(belief.logOdds[0], belief.rest) : belief.logOdds[0];
+  const auto told = [&](double h) { return weight * std::max(h - top, -most); };
+  for (double& x : logs) x += told(belief.rest);
+  for (int i = 0; i < count; ++i)
+    logs[belief.ids[i] - 1] += told(belief.logOdds[i]) - told(belief.rest);
+  const double last = belief.logOdds[count - 1];
+  const double range = top - (isRestThere ? std::min<double>(last, belief.rest) : last);
+  return range > most ? weight * most / range : weight;
 }
 
 }  // namespace
 
 void SmoothingOptions::describe(strict_files::OptionList& list) {
-  list.add("neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
-           "how much a voxel across a face counts for a voxel's class, beside 1 for itself; 0: "
-           "nothing. 0.4 sees through 30 % of wrong labels, less keeps smaller things");
+  list.add(
+      "neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
+      "what a voxel across a face tells about a voxel's class, beside 1 for itself, up to odds "
+      "of 25; 0: nothing. 1 sees through 30 % of wrong labels, less keeps smaller things");
 }
 
 void SmoothingOptions::validate() const { strict_files::checkOptions(*this, "SmoothingOptions"); }
+
+/** What a voxel and its neighbors tell together. */
+struct SmoothedView::Heard {
+  SemanticOcTree::Belief own;
+  std::vector<double> logOdds;  ///< summed, up to a constant
+  double weight = 0;            ///< summed, 1 for the voxel
+};
 
 SmoothedView::SmoothedView(const SemanticOcTree& map, const SmoothingOptions& options)
     : m_map(map),
       m_options(options),
       m_mostBehind(mostBehind(map.filterParameters(), map.numClasses())) {
   options.validate();
-  if (options.neighborWeight > 0) m_repeated = shareRepeated(map);
+  if (options.neighborWeight > 0) m_repeated = repeatedInMap();
+}
+
+double SmoothedView::repeatedInMap() const {
+  std::vector<Heard> asked;
+  double own = 0;
+  const std::size_t oneIn =
+      1 + m_map.getNumLeafNodes() * static_cast<std::size_t>(m_map.numClasses()) / kAsked;
+  std::size_t number = 0;
+  for (auto leaf = m_map.begin_leafs(); leaf != m_map.end_leafs(); ++leaf) {
+    if (number++ % oneIn != 0 || leaf.getDepth() != m_map.getTreeDepth()) continue;
+    if (!leaf->hasClassRecord() || !m_map.isNodeOccupied(*leaf)) continue;
+    const octomap::OcTreeKey key = leaf.getKey();
+    const Eigen::Array3i voxel(key[0], key[1], key[2]);
+    const Heard alone = listen(voxel, 0);
+    own += stated(alone, 0)[alone.own.ids[0] - 1];
+    asked.push_back(listen(voxel, m_options.neighborWeight));
+  }
+  double least = 0, most = 1;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double middle = (least + most) / 2;
+    double together = 0;
+    for (const Heard& heard : asked) together += stated(heard, middle)[heard.own.ids[0] - 1];
+    (together > own ? least : most) = middle;
+  }
+  return (least + most) / 2;
 }
 
 CellState SmoothedView::query(const octomap::OcTreeKey& key) const {
@@ -129,22 +151,27 @@ std::vector<double> SmoothedView::distribution(double x, double y, double z) con
 }
 
 std::vector<double> SmoothedView::classes(const octomap::OcTreeKey& key) const {
-  std::vector<double> p(m_map.numClasses(), 0.0);
-  const Eigen::Array3i voxel(key[0], key[1], key[2]);
+  const Heard heard = listen({key[0], key[1], key[2]}, m_options.neighborWeight);
+  return heard.weight > 0 ? stated(heard, m_repeated) : std::vector<double>();
+}
+
+SmoothedView::Heard SmoothedView::listen(const Eigen::Array3i& voxel, double weight) const {
+  Heard heard;
+  heard.logOdds.assign(static_cast<std::size_t>(m_map.numClasses()), 0.0);
   const SemanticOcTreeNode leaf = labeledLeaf(m_map, voxel);
-  const SemanticOcTree::Belief own = leaf ? m_map.belief(leaf) : SemanticOcTree::Belief();
-  double heard = leaf ? 1 : 0;
-  if (leaf) add(own, 1, p);
+  if (leaf) heard.weight = add(heard.own = m_map.belief(leaf), 1, HUGE_VAL, heard.logOdds);
   const auto end = leaf ? neighbors().begin() + kFaces : neighbors().end();
-  for (auto n = neighbors().begin(); m_options.neighborWeight > 0 && n != end; ++n)
-    if (const SemanticOcTreeNode next = labeledLeaf(m_map, voxel + n->offset)) {
-      const double weight = m_options.neighborWeight * n->share;
-      add(m_map.belief(next), weight, p);
-      heard += weight;
-    }
-  if (heard == 0) return {};
+  for (auto n = neighbors().begin(); weight > 0 && n != end; ++n)
+    if (const SemanticOcTreeNode next = labeledLeaf(m_map, voxel + n->offset))
+      heard.weight += add(m_map.belief(next), weight * n->share, kMostOfNeighbor, heard.logOdds);
+  return heard;
+}
+
+std::vector<double> SmoothedView::stated(const Heard& heard, double repeated) const {
   const auto [power, shared] = m_map.filterParameters().calibration;
-  const double repeats = 1 + m_repeated * std::max(0.0, heard - 1);
+  const SemanticOcTree::Belief& own = heard.own;
+  const double repeats = 1 + repeated * std::max(0.0, heard.weight - 1);
+  std::vector<double> p = heard.logOdds;
   const double highest = *std::max_element(p.begin(), p.end());
   double sum = 0;
   for (double& x : p) sum += x = std::exp(power * std::max((x - highest) / repeats, -m_mostBehind));

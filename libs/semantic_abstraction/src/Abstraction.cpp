@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -44,29 +45,73 @@ std::vector<double> classesOf(const SemanticOcTree::Belief& belief, const Calibr
 /** About so many leaves are asked, and steps in which a power is told. */
 constexpr std::size_t kAskedLeaves = 1 << 14;
 constexpr double kPowerSteps = 256;
+/** How much a cell counts beside the statement of one of its voxels. */
+constexpr double kWeightOfCell = 2;
+/** How often the search for what both are worth is halved. */
+constexpr int kHalvings = 12;
+
+/** A voxel, and its cell of the compressed map. */
+struct Asked {
+  Asked(const SemanticOcTree::Belief& voxel, const SemanticOcTree::Belief& ofCell,
+        const Calibration& calibration, int numClasses)
+      : cell(ofCell), told(classesOf(voxel, calibration, numClasses)), likeliest(voxel.ids[0] - 1) {
+    stated = told[likeliest];
+    for (std::size_t k = 0; k < told.size(); ++k)
+      told[k] =
+          exactLogarithm(told[k]) + kWeightOfCell * cell.logOddsOf(static_cast<ClassId>(k + 1));
+    const double most = *std::max_element(told.begin(), told.end());
+    for (double& x : told) x -= most;
+  }
+  /** p(class | occupied) as both say it. \param trust 1: as if neither repeated the other */
+  std::vector<double> together(double trust) const {
+    std::vector<double> p;
+    for (const double x : told) p.push_back(exactExponential(trust * x));
+    const double sum = std::accumulate(p.begin(), p.end(), 0.0);
+    for (double& x : p) x /= sum;
+    return p;
+  }
+
+  SemanticOcTree::Belief cell;
+  std::vector<double> told;  ///< logarithms of both, added, less the largest
+  std::size_t likeliest;     ///< the voxel's own class
+  double stated;             ///< of it
+};
+
+/** Who learns more believes, in the mean, what was believed before: so what voxels state of their
+ * own classes stays, in the mean, when they hear their cells. \return trust */
+double trustIn(const std::vector<Asked>& asked) {
+  double least = 0, most = 1;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double middle = (least + most) / 2;
+    double gain = 0;
+    for (const Asked& a : asked) gain += a.together(middle)[a.likeliest] - a.stated;
+    (gain < 0 ? least : most) = middle;
+  }
+  return (least + most) / 2;
+}
 
 /** Mixtures state too little: voxels of a cell err in different ways, so that the class of most of
- * them is right more often than each. What a voxel is follows from its own statement and from what
- * its cell says before, and the compressed map's power makes that likely. The map's power is taken
- * twice of the cell: its voxels state that much less than it believes, and repeat each other as
- * scans do. A map that is not calibrated has compressed maps that are not. */
+ * them is right more often than each. What a voxel is follows from its own statement and from its
+ * cell, and the compressed map's power makes that likely. Cells of one size are trusted alike; of a
+ * single voxel that hears itself, nothing but its statement is left. A map that is not calibrated
+ * has compressed maps that are not. */
 void calibrate(const SemanticOcTree& map, SemanticOcTree& compressed) {
   const Calibration& own = map.filterParameters().calibration;
   if (own.isIdentity()) return;
-  const int numClasses = map.numClasses();
-  const double shy = std::min(1.0, own.power);
   const std::size_t oneIn = 1 + map.getNumLeafNodes() / kAskedLeaves;
   std::size_t number = 0;
-  CalibrationFit fit;
+  std::map<unsigned, std::vector<Asked>> byDepth;
   for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
     if (!leaf->hasClassRecord() || !map.isNodeOccupied(*leaf) || number++ % oneIn != 0) continue;
-    const Node cell = compressed.search(leaf.getKey());
-    std::vector<double> is = classesOf(map.belief(*leaf), own, numClasses);
-    const auto before = classesOf(compressed.belief(cell), {shy * shy, 0}, numClasses);
-    double sum = 0;
-    for (std::size_t k = 0; k < is.size(); ++k) sum += is[k] *= before[k];
-    for (double& x : is) x /= sum;
-    fit.add(compressed.belief(cell), is, 1);
+    unsigned depth = 1;
+    Node cell = compressed.search(leaf.getKey(), depth);
+    while (!cell.isLeaf()) cell = compressed.search(leaf.getKey(), ++depth);
+    byDepth[depth].emplace_back(map.belief(*leaf), compressed.belief(cell), own, map.numClasses());
+  }
+  CalibrationFit fit;
+  for (const auto& [depth, asked] : byDepth) {
+    const double trust = trustIn(asked);
+    for (const Asked& a : asked) fit.add(a.cell, a.together(trust), 1);
   }
   if (fit.empty()) return;
   const double power = std::round(kPowerSteps * fit.fit({1, 0}).power) / kPowerSteps;

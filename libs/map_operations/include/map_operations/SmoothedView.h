@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
+#include <Eigen/Core>
 
 #include <vector>
 
@@ -7,13 +8,14 @@ namespace semantic_octree {
 
 /** How much the voxels around it tell about a voxel's class. */
 struct SmoothingOptions {
-  /** Weight of what a voxel that shares a face tells, beside 1 for the voxel itself. Straight
-   * borders between classes stay where they are whatever the weight; a single voxel that is as sure
-   * as four neighbors of another class keeps its class below 0.25. 0: each voxel for itself.
+  /** Weight of what a voxel that shares a face tells, beside 1 for the voxel itself; none tells
+   * more than odds of 25. Straight borders between classes stay where they are whatever the weight;
+   * a single voxel that is as sure as four neighbors of another class keeps its class below 0.25.
+   * 0: each voxel for itself.
    *
    * Voxels in which no label was seen are answered for by their 26 neighbors: those across an edge
    * with half the weight, those across a corner with a quarter. */
-  double neighborWeight = 0.4;
+  double neighborWeight = 1;
 
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
@@ -24,19 +26,22 @@ struct SmoothingOptions {
  * Gan et al., "Bayesian Spatial Kernel Smoothing for Scalable Dense Semantic Mapping", and ConvBKI,
  * but at the query: the map stays the exact filter of its scans, and the weight can change).
  *
- * With h_k the log-odds that the filter believes of a voxel's classes,
+ * With h_k the log-odds that the filter believes of a voxel's classes, less those of the likeliest,
  *
- *     g_k = (h_k(voxel) + weight sum_n h_k(neighbor n)) / (1 + repeated (W - 1)),
+ *     g_k = (h_k(voxel) + weight sum_n max(h_k(n), -3.2)) / (1 + repeated (W - 1)).
  *
- * where W is the sum of the weights, 1 for the voxel; below 1 it counts as 1. Voxels without a
- * label tell nothing and have no weight. No class falls farther behind the likeliest than the
- * filter's limits let it in one voxel. What is stated follows from g as the map's own follows from
- * h, with the map's Calibration: classes share what the voxel's own record names.
+ * A neighbor tells no more than odds of 25 = e^3.2, for a border may lie between. W is the sum of
+ * the weights: 1 for the voxel, `weight` for a neighbor, in proportion less if its log-odds range
+ * over more than 3.2; below 1 it counts as 1. Voxels without a label tell nothing and have no
+ * weight. No class falls farther behind the likeliest than the filter's limits let it in one voxel.
+ * What is stated follows from g as the map's own follows from h, with the map's Calibration:
+ * classes share what the voxel's own record names.
  *
  * A sum is right if neighbors err by themselves (repeated = 0), a mean if they all err alike
- * (repeated = 1). The map tells which it is: among neighbors that agree on the likeliest class,
- * and name a second one, `repeated` is the share of those whose second class is the same. Occupancy
- * and status are the voxel's own.
+ * (repeated = 1). The map tells which it is: who learns more believes, in the mean, what was
+ * believed before. So `repeated` is such that the class that a voxel by itself is surest of is as
+ * likely with its neighbors as without them, in the mean over occupied voxels. Occupancy and status
+ * are the voxel's own.
  *
  * For maps of voxels: in a leaf of a compressed map, which is larger, the same mixture would count
  * several times. The map must outlive the view, and is looked at once, when the view is made, for
@@ -59,9 +64,13 @@ class SmoothedView {
   std::vector<double> distribution(double x, double y, double z) const;
 
  private:
+  struct Heard;
   /** K probabilities, given that the voxel is occupied; empty: no voxel of those asked has a label.
    */
   std::vector<double> classes(const octomap::OcTreeKey& key) const;
+  Heard listen(const Eigen::Array3i& voxel, double weight) const;
+  std::vector<double> stated(const Heard& heard, double repeated) const;
+  double repeatedInMap() const;
 
   const SemanticOcTree& m_map;
   SmoothingOptions m_options;

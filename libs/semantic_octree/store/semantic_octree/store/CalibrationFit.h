@@ -19,6 +19,17 @@ inline double exactExponential(double x) {
   return std::ldexp(sum, static_cast<int>(power));
 }
 
+/** ln x of x > 0, to 1e-15; the same bits everywhere. */
+inline double exactLogarithm(double x) {
+  constexpr double kLn2 = 0.69314718055994531;
+  int power;
+  const double part = std::frexp(x, &power), z = (part - 0.75) / (part + 0.75);
+  double sum = 0;
+  for (int i = 23; i > 0; i -= 2) sum = sum * z * z + 1.0 / i;
+  constexpr double kLn075 = -0.28768207245178093;
+  return 2 * z * sum + kLn075 + power * kLn2;
+}
+
 /** Finds the Calibration of beliefs from what they are about. Only additions, multiplications and
  * divisions are made: results are the same bits everywhere. */
 class CalibrationFit {
