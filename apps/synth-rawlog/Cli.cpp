@@ -52,6 +52,9 @@ void addSensors(CLI::App& app, Cli& cli) {
       ->capture_default_str();
   app.add_option("--lidar-range", cli.lidar.maxRange, "Largest range of the LiDAR, m")
       ->capture_default_str();
+  addNumber(app, "--turn-time", cli.turnTime, strict_files::between(0.0, 10.0),
+            "Time that a turn of the LiDAR takes, s: points are seen from where it is by then, and "
+            "have times");
   app.add_option("--ghosts", cli.lidar.ghosts,
                  "Share of the LiDAR's beams on windows, cars, water and signs that return by way "
                  "of what these mirror")

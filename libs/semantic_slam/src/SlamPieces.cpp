@@ -41,13 +41,8 @@ bool SlamEngine::holdsAcross(std::size_t first) const {
   const auto before = static_cast<std::size_t>(m_scale.submapKeyframes);
   const Seen then = pointsOf(first - std::min(first, before), place, place);
   const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
-  std::vector<Submap> submaps;
-  for (const double size : m_scale.cells) {
-    submaps.emplace_back(size, m_options.useClasses, m_scale.isPlanar);
-    submaps.back().add(then.cloud, Pose::Identity());
-    submaps.back().finish();
-  }
-  const Registration r = match(submaps, pointsOf(first, newest, newest), T_guess, Matrix6::Zero());
+  const Registration r = match(submapsOf(then.cloud, m_scale.cells),
+                               pointsOf(first, newest, newest), T_guess, Matrix6::Zero());
   return r.coveredShare >= kCovered && r.matchedShare >= kHolds &&
          (T_guess.inverse() * r.T_submap_scan).translation().norm() < kHoldsMeters;
 }
@@ -133,8 +128,7 @@ std::optional<PoseEdge> SlamEngine::findPiece() const {
   const auto found = PlaneSearch(all, cell).find(some, {middle.x(), middle.y(), 0},
                                                  {box.sizes().maxCoeff() / 2, M_PI}, kFoundScore);
   if (!found) return std::nullopt;
-  Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], 0));
-  T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
+  const Pose T_found = poseOfFlat(*found);
   const auto distance = [&](std::size_t k) {
     return (m_poses[k].translation() - T_found.translation()).head<2>().norm();
   };
