@@ -8,6 +8,7 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "Conversions.h"

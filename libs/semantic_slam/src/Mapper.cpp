@@ -14,7 +14,7 @@ Mapper::Mapper(SemanticOcTree& map, const MapperOptions& options, const Semantic
     : m_map(map), m_options(options), m_calibrator(map.getResolution(), map.numClasses()) {
   m_options.insertion.validate();
   if (!m_options.localize) return;
-  m_slam.emplace(m_options.slam);
+  m_slam.emplace(m_options.slam, m_options.scans);
   if (!map.empty() && !reference) reference = &map;
   if (reference) m_slam->setReference(*reference);
   if (!map.empty()) return;
@@ -49,7 +49,7 @@ void Mapper::relocalize(const Eigen::Isometry3d& T_map_odometry) {
   if (m_slam->poses().empty()) return;
   finish();
   m_keyframes = nullptr;
-  m_slam.emplace(m_options.slam);
+  m_slam.emplace(m_options.slam, m_options.scans);
   m_slam->setReference(m_map);
 }
 

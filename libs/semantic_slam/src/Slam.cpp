@@ -100,9 +100,9 @@ SlamReport SlamEngine::report() const {
   return report;
 }
 
-Slam::Slam(const SlamOptions& options) {
+Slam::Slam(const SlamOptions& options, const std::filesystem::path& folder) {
   options.validate();
-  m = std::make_unique<SlamEngine>(options);
+  m = std::make_unique<SlamEngine>(options, folder);
 }
 Slam::~Slam() = default;
 Slam::Slam(Slam&&) noexcept = default;

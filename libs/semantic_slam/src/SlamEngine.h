@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_slam/Reference.h>
 #include <semantic_slam/Slam.h>
+#include <strict_files/OutputFiles.h>
 
 #include "MotionNoise.h"
 #include "PlaneSearch.h"
@@ -22,7 +23,9 @@ class SlamEngine {
  public:
   using Pose = Eigen::Isometry3d;
 
-  explicit SlamEngine(const SlamOptions& options) : m_options(options) {}
+  SlamEngine(const SlamOptions& options, const std::filesystem::path& folder) : m_options(options) {
+    if (!folder.empty()) m_file.emplace(folder);
+  }
   void setReference(const semantic_octree::SemanticOcTree& map);
   Slam::Added add(const SensorScan& scan, const std::optional<Pose>& T_odometry_robot,
                   double seconds);
@@ -38,9 +41,14 @@ class SlamEngine {
     Pose T_odometry_robot;
   };
   struct Keyframe {
-    Seen seen;
+    Seen seen;   ///< without the cloud, if that is in the file
     double way;  ///< from the first one, m
+    std::uint64_t place;
+    std::size_t numPoints;
   };
+  /** Appends a keyframe. */
+  void keep(Seen seen);
+  Seen seenAt(std::size_t keyframe) const;
 
   // --- Tracking ---
   void setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor);
@@ -142,6 +150,7 @@ class SlamEngine {
   double worstStep() const;
 
   SlamOptions m_options;
+  std::optional<strict_files::ScratchFile> m_file;  ///< of keyframes' clouds
   SensorScale m_scale;
   std::vector<Keyframe> m_keyframes;
   std::vector<Pose> m_poses;

@@ -43,7 +43,7 @@ auto SlamEngine::pointsOf(std::size_t first, std::size_t last, std::size_t frame
   Seen all{{}, m_keyframes[frame].seen.T_odometry_robot};
   for (std::size_t k = first; k <= last; ++k) {
     const Eigen::Isometry3f T = (m_poses[frame].inverse() * m_poses[k]).cast<float>();
-    const LabeledCloud& cloud = m_keyframes[k].seen.cloud;
+    const LabeledCloud cloud = seenAt(k).cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i) all.cloud.points.push_back(T * cloud.points[i]);
     all.cloud.classes.insert(all.cloud.classes.end(), cloud.classes.begin(), cloud.classes.end());
   }
@@ -239,7 +239,7 @@ bool SlamEngine::followReference() {
   constexpr double kEvery = 3;  // m
   if (m_keyframes[newest].way < m_lastReferenced + kEvery) return false;
   m_lastReferenced = m_keyframes[newest].way;
-  const auto found = findInReference(m_keyframes[newest].seen, m_poses[newest]);
+  const auto found = findInReference(seenAt(newest), m_poses[newest]);
   if (!found) return false;
   const std::size_t before = m_edges.size();
   const bool moved = confirm(m_pendingReferences, lookOf(newest, *found));

@@ -62,16 +62,16 @@ void SlamEngine::tearAt(std::size_t first) {
   for (std::size_t k = first; k < m_keyframes.size(); ++k) {
     const auto edge = std::find_if(m_edges.begin(), m_edges.end(),
                                    [k](const PoseEdge& e) { return !e.isDoubtful && e.b == k; });
+    const Seen seen = seenAt(k);
     if (k == first) {
       edge->information = kUnknown;
     } else {
       const Pose T_guess = m_local.T_local_last() * edge->T_a_b;
-      const Registration r =
-          match(m_local.submaps(), m_keyframes[k].seen, T_guess, guessed(edge->T_a_b));
+      const Registration r = match(m_local.submaps(), seen, T_guess, guessed(edge->T_a_b));
       edge->T_a_b = rigid(m_local.T_local_last().inverse() * r.T_submap_scan);
-      m_poses[k] = levelled(m_poses[k - 1] * edge->T_a_b, m_keyframes[k].seen.T_odometry_robot);
+      m_poses[k] = levelled(m_poses[k - 1] * edge->T_a_b, seen.T_odometry_robot);
     }
-    m_local.add(m_keyframes[k].seen.cloud, k == first ? Pose::Identity() : edge->T_a_b, m_scale,
+    m_local.add(seen.cloud, k == first ? Pose::Identity() : edge->T_a_b, m_scale,
                 m_options.useClasses);
   }
 }
@@ -116,7 +116,7 @@ std::optional<PoseEdge> SlamEngine::findPiece() const {
   PlanePoints all;
   for (std::size_t k = 0; k < first; ++k)
     for (const Eigen::Vector2d& p :
-         uprightPoints(moved(m_keyframes[k].seen.cloud, m_poses[k]), m_scale.isPlanar, cell))
+         uprightPoints(moved(seenAt(k).cloud, m_poses[k]), m_scale.isPlanar, cell))
       all.push_back(p);
   PlanePoints some;
   const PlanePoints searched = uprightPoints(stretch.cloud, m_scale.isPlanar, cell);

@@ -138,8 +138,9 @@ void SlamEngine::straightenFirst(const Vector6& velocity) {
   m_velocity = velocity;
   const SensorScan first = std::exchange(m_first, {});
   if (first.times.empty() || m_keyframes.size() > 1) return;
-  Seen& seen = m_keyframes[0].seen;
-  seen = seenIn(first, 0, velocity, seen.T_odometry_robot);
+  const Seen seen = seenIn(first, 0, velocity, m_keyframes[0].seen.T_odometry_robot);
+  m_keyframes.clear();
+  keep(seen);
   m_local.clear();
   m_local.add(seen.cloud, Pose::Identity(), m_scale, m_options.useClasses);
 }
@@ -153,7 +154,8 @@ void SlamEngine::setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor)
     m_scale.cells.insert(m_scale.cells.begin(), {4 * m_scale.cells[0], 2 * m_scale.cells[0]});
   m_local.clear();  // of another sensor
   if (!m_keyframes.empty())
-    m_local.add(m_keyframes.back().seen.cloud, Pose::Identity(), m_scale, m_options.useClasses);
+    m_local.add(seenAt(m_keyframes.size() - 1).cloud, Pose::Identity(), m_scale,
+                m_options.useClasses);
 }
 
 Eigen::Isometry3d SlamEngine::predictedStep(const std::optional<Pose>& T_odometry_robot) {
@@ -229,11 +231,34 @@ Slam::Added SlamEngine::beginFirst(const Seen& seen) {
 }
 
 void SlamEngine::begin(const Seen& seen, const Pose& T_map_robot, const Pose& T_last_keyframe) {
+  keep(seen);
   m_T_keyframe_last = m_T_keyframe_found = Pose::Identity();
   if (isTorn()) m_lostInRow = 0;
   m_poses.push_back(levelled(T_map_robot, seen.T_odometry_robot));
   m_local.add(seen.cloud, T_last_keyframe, m_scale, m_options.useClasses);
-  m_keyframes.push_back({seen, m_report.way});  // a copy has no room to grow
+}
+
+void SlamEngine::keep(Seen seen) {
+  const LabeledCloud& cloud = seen.cloud;
+  const std::size_t n = cloud.size();
+  std::uint64_t place = 0;
+  if (m_file) {
+    place = m_file->append(cloud.points.data(), n * sizeof(Eigen::Vector3f));
+    m_file->append(cloud.classes.data(), n);
+    seen.cloud = {};
+  }
+  m_keyframes.push_back({seen, m_report.way, place, n});  // a copy has no room to grow
+}
+
+auto SlamEngine::seenAt(std::size_t keyframe) const -> Seen {
+  const auto& [kept, way, place, n] = m_keyframes[keyframe];
+  Seen seen = kept;
+  if (!m_file) return seen;
+  seen.cloud.points.resize(n);
+  seen.cloud.classes.resize(n);
+  m_file->read(place, seen.cloud.points.data(), n * sizeof(Eigen::Vector3f));
+  m_file->read(place + n * sizeof(Eigen::Vector3f), seen.cloud.classes.data(), n);
+  return seen;
 }
 
 std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_step) {
@@ -293,8 +318,7 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
   const std::size_t first = m_keyframes.size() - m_local.poses().size();
   for (std::size_t k = first; k < m_keyframes.size(); ++k) {
     const Pose& T = m_local.poses()[k - first];
-    for (const Eigen::Vector2d& p : upright(moved(m_keyframes[k].seen.cloud, T)))
-      points.push_back(p);
+    for (const Eigen::Vector2d& p : upright(moved(seenAt(k).cloud, T))) points.push_back(p);
   }
   const Pose T_level = planar(T_local_guess).inverse() * T_local_guess;
   const auto found = PlaneSearch(points, m_scale.gridCell)

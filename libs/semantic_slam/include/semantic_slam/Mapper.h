@@ -21,7 +21,8 @@ struct MapperOptions {
   /** With `localize`: of the scans that begin no keyframe each n-th is inserted; 1: all. With more,
    * a robot that waits does not become ever surer of what may go away. */
   int insertEvery = 1;
-  /** With `localize`: a folder for the scans that a closed loop may move; empty: in memory. */
+  /** With `localize`: a folder for the scans that a closed loop may move, and for what loops are
+   * searched in; empty: in memory. */
   std::filesystem::path scans;
 };
 

@@ -4,6 +4,7 @@
 #include <semantic_slam/SlamOptions.h>
 #include <semantic_types/LabeledCloud.h>
 
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -60,8 +61,10 @@ struct SlamReport {
  * Keyframes are numbered as by semantic_octree::KeyframeMap, which a map follows it with. */
 class Slam {
  public:
-  /** \throw std::invalid_argument bad options. */
-  explicit Slam(const SlamOptions& options);
+  /** \param folder for what loops are searched in, in a file that goes when this goes; empty: in
+   * memory \throw std::invalid_argument bad options \throw std::runtime_error naming the folder:
+   * it cannot be written to, now or later. */
+  explicit Slam(const SlamOptions& options, const std::filesystem::path& folder = {});
   ~Slam();
   Slam(Slam&&) noexcept;
 
