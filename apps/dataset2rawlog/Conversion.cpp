@@ -94,13 +94,14 @@ void Output::writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D&
 
 void Output::writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
                         semantic_types::LabeledCloud cloud,
-                        const mrpt::poses::CPose3D& T_robot_sensor) {
+                        const mrpt::poses::CPose3D& T_robot_sensor, std::vector<float> times) {
   labeled_cloud::CObservationLabeledCloud observation;
   observation.timestamp = time;
   observation.sensorLabel = sensorLabel;
   observation.sensorPose = T_robot_sensor;
   observation.classNames = m_classNames;
   observation.cloud = std::move(cloud);
+  observation.times = std::move(times);
   m_noise.apply(observation.cloud, m_T_map_robot * labeled_cloud::toEigen(T_robot_sensor));
   const auto& classes = observation.cloud.classes;
   const auto unlabeled = std::count(classes.begin(), classes.end(), kNoClass);

@@ -72,10 +72,10 @@ class Output {
   /** Adds the robot's pose at a time. */
   void writePose(mrpt::Clock::time_point time, const mrpt::poses::CPose3D& T_map_robot);
 
-  /** Adds a cloud, after its labels took the noise. */
+  /** Adds a cloud, after its labels took the noise. \param times of points, if they have some */
   void writeCloud(mrpt::Clock::time_point time, const std::string& sensorLabel,
                   semantic_types::LabeledCloud cloud,
-                  const mrpt::poses::CPose3D& T_robot_sensor = {});
+                  const mrpt::poses::CPose3D& T_robot_sensor = {}, std::vector<float> times = {});
 
   /** Adds another observation of so many points, whose labels took the noise already. */
   void writeScan(const mrpt::obs::CObservation& observation, std::size_t points,

@@ -209,7 +209,8 @@ class BagScans {
     if (!m_labelField.empty() && !problem.empty()) throw std::runtime_error(problem);
     if (m_labelField.empty()) cloud.classes.clear();
     m_output.writeCloud(timeOf(message), waiting.topic.name, std::move(cloud),
-                        poseOf(*T_robot_sensor));
+                        poseOf(*T_robot_sensor),
+                        timesOf(message.points, static_cast<double>(message.stamp) * 1e-9));
   }
 
   void writeLaserScan(const Waiting& waiting) {

@@ -15,6 +15,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "StandardOutput.h"
 #include "inputs/Inputs.h"
@@ -47,8 +48,10 @@ std::uint64_t totalSize(const std::vector<fs::path>& files) {
 
 }  // namespace
 
-MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map, OnScan onScan)
+MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map,
+                       const labeled_cloud::Trajectory& trajectory, OnScan onScan)
     : m_map(map),
+      m_trajectory(trajectory),
       m_follower(map.tree()),
       m_calibrator(map.tree().getResolution(), map.tree().numClasses()),
       m_hadContent(!map.isEmpty()),
@@ -87,7 +90,8 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
   std::optional<Progress> progress(std::in_place, "Mapping", totalSize(rawlogs));
   labeled_cloud::ReadAhead<StreamedObservation> ahead([&stream] { return stream.next(); },
                                                       kScansAhead);
-  while (const auto observation = ahead.next()) {
+  while (auto observation = ahead.next()) {
+    deskew(*observation);
     add(*observation);
     if ((m_summary.stopped = stop.pending())) break;
     progress->update(observation->bytesRead, std::to_string(m_summary.inserted) + " scans");
@@ -122,6 +126,21 @@ void MapBuilder::noteLabels() const {
       << "Labels that share a voxel agree as if " << std::lround(100 * labels->accuracy)
       << " % of them were right, and are trusted so far: wrong labels, or voxels larger than things"
       << std::endl;
+}
+
+void MapBuilder::deskew(StreamedObservation& observation) const {
+  if (m_mapper || !observation.scan || observation.scan->times.empty()) return;
+  LabeledScan& scan = *observation.scan;
+  const auto isNearer = [](float a, float b) { return std::abs(a) < std::abs(b); };
+  const double time = *std::max_element(scan.times.begin(), scan.times.end(), isNearer);
+  const auto T_map_then =
+      m_trajectory.at(mrpt::Clock::fromDouble(mrpt::Clock::toDouble(scan.timestamp) + time));
+  if (!T_map_then || time == 0) return;
+  semantic_slam::SensorScan skewed{std::move(scan.cloud),
+                                   labeled_cloud::toEigen(scan.T_robot_sensor)};
+  skewed.times = std::exchange(scan.times, {});
+  const auto T_then = labeled_cloud::toEigen(*T_map_then - observation.T_map_robot);
+  scan.cloud = deskewed(std::move(skewed), semantic_slam::velocityOf(T_then, time)).cloud;
 }
 
 void MapBuilder::add(const StreamedObservation& observation) {
@@ -159,8 +178,9 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   m_seconds += m_clock.secondsUntil(scan.timestamp);
   std::optional<Eigen::Isometry3d> T_odometry_robot;
   if (m_hasOdometry) T_odometry_robot = labeled_cloud::toEigen(T_map_robot);
-  const auto inserted = m_mapper->insert(scan.cloud, labeled_cloud::toEigen(scan.T_robot_sensor),
-                                         T_odometry_robot, m_seconds);
+  semantic_slam::SensorScan seen{scan.cloud, labeled_cloud::toEigen(scan.T_robot_sensor)};
+  seen.times = scan.times;
+  const auto inserted = m_mapper->insert(seen, T_odometry_robot, m_seconds);
   if (!m_hasOdometry)
     T_map_robot = CPose3D(mrpt::math::CMatrixDouble44(inserted.place.T_map_robot.matrix()));
   m_clock.note(scan.timestamp);

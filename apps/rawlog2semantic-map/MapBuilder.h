@@ -24,8 +24,10 @@ class MapBuilder {
   using OnScan = std::function<void(const labeled_cloud::LabeledScan& scan,
                                     const mrpt::poses::CPose3D& T_map_robot)>;
 
-  /** The map must outlive the builder. */
-  explicit MapBuilder(semantic_map::CSemanticOctoMap& map, OnScan onScan = {});
+  /** Map and trajectory must outlive the builder. \param trajectory of the rawlogs: scans whose
+   * points have times are deskewed by it, unless poses are corrected */
+  MapBuilder(semantic_map::CSemanticOctoMap& map, const labeled_cloud::Trajectory& trajectory,
+             OnScan onScan = {});
 
   /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
   void timeWithoutAbstraction();
@@ -54,6 +56,8 @@ class MapBuilder {
 
  private:
   void add(const labeled_cloud::StreamedObservation& observation);
+  /** By the motion between the scan's time and that of the point farthest from it. */
+  void deskew(labeled_cloud::StreamedObservation& observation) const;
   /** Tells if labels contradict each other more than their parameters say. */
   void noteLabels() const;
   void insertScan(const labeled_cloud::StreamedObservation& observation);
@@ -68,6 +72,7 @@ class MapBuilder {
   void checkFoundInMap() const;
 
   semantic_map::CSemanticOctoMap& m_map;
+  const labeled_cloud::Trajectory& m_trajectory;
   semantic_octree::LeafFollower m_follower;
   semantic_octree::Calibrator m_calibrator;       ///< the mapper has its own
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected

@@ -38,6 +38,7 @@ void ScanLog::write(const labeled_cloud::LabeledScan& scan,
   cloud.sensorPose = scan.T_robot_sensor;
   cloud.classNames = m_classNames;
   cloud.cloud = scan.cloud;
+  cloud.times = scan.times;
   m_writer.write(cloud);
 }
 

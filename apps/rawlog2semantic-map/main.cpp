@@ -240,7 +240,7 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   if (labels.confusion) map.tree().setClassPrior(labels.confusion->classShares());
   Scans scans(cli, table, config, trajectory);
   SideOutputs outputs(cli, table);
-  MapBuilder builder(map, [&](const auto& scan, const auto& T) {
+  MapBuilder builder(map, trajectory, [&](const auto& scan, const auto& T) {
     outputs.write(scan, T);
     if (live) live->show(scan, T, builder.summary());
   });

@@ -194,7 +194,8 @@ bool MappingNode::insertNext() {
 }
 
 void MappingNode::insert(const WaitingScan& scan, const Placed& place) {
-  const std::vector<semantic_slam::SensorScan> seen = {{scan.read(), place.second}};
+  std::vector<semantic_slam::SensorScan> seen = {scan.read()};
+  seen[0].T_robot_sensor = place.second;
   const auto stamp = mrpt::Clock::fromDouble(ros2::secondsOf(scan.stamp));
   if (auto* navigator = m_driving ? m_driving->navigator() : nullptr) {
     navigator->update(*robotAt(scan.stamp));
@@ -202,7 +203,7 @@ void MappingNode::insert(const WaitingScan& scan, const Placed& place) {
     m_driving->learnSensor(seen[0]);
   } else {
     const double seconds = m_seconds + m_scanClock.secondsUntil(stamp);
-    m_mapper.insert(seen, m_mapper.locate(seen, place.first), seconds);
+    m_mapper.insert(seen, m_mapper.locate(seen, place.first, seconds), seconds);
     m_seconds = seconds;
   }
   m_scanClock.note(stamp);

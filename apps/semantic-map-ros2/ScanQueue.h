@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_types/LabeledCloud.h>
+#include <semantic_slam/Slam.h>
 
 #include <Eigen/Geometry>
 #include <chrono>
@@ -23,8 +23,8 @@ struct WaitingScan {
   std::size_t bytes = 0;
   Eigen::Isometry3d T_frame_points = Eigen::Isometry3d::Identity();
   std::function<bool()> isComplete;  ///< whether all is there that it may have; null: it is
-  /** \throw std::exception what is wrong with it */
-  std::function<semantic_types::LabeledCloud()> read;
+  /** Where its sensor is on the robot is left open. \throw std::exception what is wrong with it */
+  std::function<semantic_slam::SensorScan()> read;
 };
 
 /** Scans in the order of their stamps, put in by DDS's threads and taken by another one. */

@@ -17,8 +17,8 @@ using point_fields::RawCloud;
 using point_fields::RawImage;
 using ros2::Stamp;
 using ros2::textOf;
+using semantic_slam::SensorScan;
 using semantic_types::ClassTable;
-using semantic_types::LabeledCloud;
 
 namespace {
 
@@ -39,17 +39,19 @@ RawCloud rawOf(const ros2::PointCloud2& message) {
   return raw;
 }
 
-LabeledCloud read(const ros2::LaserScan& message) {
-  LabeledCloud cloud;
+SensorScan read(const ros2::LaserScan& message) {
+  SensorScan scan;
   for (std::uint32_t i = 0; i < message.ranges._length; ++i) {
     const float range = message.ranges._buffer[i];
     if (!(range >= message.range_min && range <= message.range_max) || !std::isfinite(range))
       continue;
     const float angle = message.angle_min + static_cast<float>(i) * message.angle_increment;
-    if (std::isfinite(angle))
-      cloud.points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0f);
+    if (!std::isfinite(angle)) continue;
+    scan.cloud.points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0f);
+    if (message.time_increment > 0 && std::isfinite(message.time_increment))
+      scan.times.push_back(static_cast<float>(i) * message.time_increment);
   }
-  return cloud;
+  return scan;
 }
 
 RawImage rawOf(const ros2::Image& message) {
@@ -187,14 +189,16 @@ bool Sensors::hasLabels(Stamp stamp) const {
   return m_camera && m_labels.count(stamp) > 0;
 }
 
-LabeledCloud Sensors::read(const ros2::PointCloud2& message) {
+SensorScan Sensors::read(const ros2::PointCloud2& message) {
   std::string problem;
-  LabeledCloud cloud = cloudOf(rawOf(message), m_options.classField, m_classes, problem);
+  SensorScan scan;
+  scan.cloud = cloudOf(rawOf(message), m_options.classField, m_classes, problem);
+  scan.times = timesOf(rawOf(message), ros2::secondsOf(ros2::stampOf(message.header.stamp)));
   if (!problem.empty()) m_complaints.say(m_hearsPoints.name() + ": " + problem);
-  return cloud;
+  return scan;
 }
 
-LabeledCloud Sensors::read(const ros2::Image& depth) {
+SensorScan Sensors::read(const ros2::Image& depth) {
   std::shared_ptr<const ros2::CameraInfo> camera;
   std::shared_ptr<const ros2::Image> labels;
   {
@@ -217,7 +221,7 @@ LabeledCloud Sensors::read(const ros2::Image& depth) {
     } catch (const std::exception& e) {
       m_complaints.say(m_hearsLabels.name() + ": points are without classes", e.what());
     }
-  return std::move(m_converter.convert(scan)->cloud);
+  return {std::move(m_converter.convert(scan)->cloud)};
 }
 
 }  // namespace semantic_map_ros2

@@ -54,8 +54,8 @@ class Sensors {
   void addLabels(std::shared_ptr<const ros2::Image> message);
   void addTransforms(const ros2::TFMessage& message, bool areStatic);
   bool hasLabels(ros2::Stamp stamp) const;
-  semantic_types::LabeledCloud read(const ros2::PointCloud2& message);
-  semantic_types::LabeledCloud read(const ros2::Image& depth);
+  semantic_slam::SensorScan read(const ros2::PointCloud2& message);
+  semantic_slam::SensorScan read(const ros2::Image& depth);
 
   const NodeOptions& m_options;
   semantic_types::ClassTable m_classes;

@@ -42,6 +42,9 @@ OptionList sensorOptions(Cli& cli) {
   for (const char* option : {"lowest", "highest", "max_range"}) list.remove(option);
   list.add("lidar_range", cli.lidar.maxRange, "m", above(synthetic_world::LidarOptions::kMinRange),
            "of the LiDAR's returns");
+  list.add("turn_time", cli.turnTime, "s", between(0, 10),
+           "that a turn of the LiDAR takes: points are seen from where it is by then, and have "
+           "times");
   list.add("ghosts", cli.lidar.ghosts, "", between(0, 1),
            "share of the LiDAR's beams on windows, cars, water and signs that return by way of "
            "what these mirror");

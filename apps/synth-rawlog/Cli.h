@@ -28,6 +28,7 @@ struct Cli {
   synthetic_world::CameraOptions camera;
   double cameraPitch = 8;  // degrees down
   synthetic_world::LidarOptions lidar;
+  double turnTime = 0;  // s that the LiDAR turns for a scan
   synthetic_world::SensorNoise noise{0.01, 0, 0};
   double labelNoise = 0;  // share of labels, of other kinds than points
   label_noise::LabelNoise::Kind labelNoiseKind = label_noise::LabelNoise::Kind::Points;

@@ -160,9 +160,11 @@ void disturb(synthetic_world::CameraFrame& frame, const synthetic_world::CameraO
 /** \param noise of labels; null: each sensor's own */
 std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const WorldClasses& classes,
                                                 const synthetic_world::World& world,
-                                                const Eigen::Isometry3d& T_world_robot,
+                                                const synthetic_world::Drive& drive,
                                                 std::uint64_t frame,
                                                 label_noise::LabelNoise* noise) {
+  const double time = static_cast<double>(frame) / cli.rate;
+  const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
   std::vector<mrpt::obs::CObservation::Ptr> seen;
   if (cli.wantsCamera()) {
     const Eigen::Isometry3d mount = T_robot_camera(cli.cameraPitch);
@@ -173,9 +175,15 @@ std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const WorldClass
   }
   if (cli.wantsLidar()) {
     const Eigen::Isometry3d mount = T_robot_lidar();
-    auto cloud = classes.of(scanLidar(world, T_world_robot * mount, cli.lidar, {cli.seed, frame}));
+    const auto path = [&](double share) {
+      return drive.T_world_robot(time + share * cli.turnTime) * mount;
+    };
+    auto cloud = classes.of(scanLidar(world, path, cli.lidar, {cli.seed, frame}));
     if (noise) noise->apply(cloud, T_world_robot * mount);
-    seen.push_back(labeledCloud(std::move(cloud), mount, classes.table()));
+    const auto scan = labeledCloud(std::move(cloud), mount, classes.table());
+    if (cli.turnTime > 0) scan->times = synthetic_world::sharesOfTurn(scan->cloud);
+    for (float& share : scan->times) share *= static_cast<float>(cli.turnTime);
+    seen.push_back(scan);
   }
   return seen;
 }
@@ -197,7 +205,7 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
     const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
     walk(walkers, time, scene.world);
     rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
-                 sense(cli, classes, scene.world, T_world_robot, static_cast<std::uint64_t>(k),
+                 sense(cli, classes, scene.world, drive, static_cast<std::uint64_t>(k),
                        noise ? &*noise : nullptr));
     trajectory.write(kStartTime + time, toMrpt(T_world_robot));
   }

@@ -115,6 +115,14 @@ TEST_F(Rosbag2, scansThatNoTransformPlacesAreSkippedAndCounted) {
   EXPECT_NE(run.output.find("2 frames skipped"), std::string::npos) << run.output;
 }
 
+TEST_F(Rosbag2, timesOfPointsComeAlong) {
+  auto bag = drive();
+  bag.push_back(cloudMessage("/other", 101, "lidar", {{1, 0, 0, 0}, {2, 0, 0, 50000}}, false, "t"));
+  const auto scans = scansOf(
+      "--no-labels --topics /other -- " + quoted(folder.write("a.mcap", mcapOf(bag, ""))), folder);
+  EXPECT_EQ(scans.at(0).scan.times, (std::vector<float>{0, 50000e-9f}));
+}
+
 TEST_F(Rosbag2, topicsAreChosenWhereThereAreSeveral) {
   auto bag = drive();
   bag.push_back(cloudMessage("/other", 101, "base_link", {{1, 0, 0, 40}, {2, 0, 0, 40}}));

@@ -129,10 +129,12 @@ struct Street {
   TemporaryFolder folder;
   std::string rawlog = (folder / "street.rawlog").string();
 
-  Street() {
-    succeeded(runProgram("synth-rawlog",
-                         {"-o", rawlog, "--scene", "village", "--sensor", "lidar", "--frames", "50",
-                          "--rate", "1", "--speed", "1", "--rings", "32", "--columns", "360"}));
+  /** \param turnTime of the LiDAR, s */
+  explicit Street(const std::string& turnTime = "0") {
+    succeeded(runProgram(
+        "synth-rawlog",
+        {"-o", rawlog, "--scene", "village", "--sensor", "lidar", "--frames", "50", "--rate", "1",
+         "--speed", "1", "--rings", "32", "--columns", "360", "--turn-time", turnTime}));
   }
   ProgramRun map(const std::string& output, const Words& more) const {
     return runProgram("rawlog2semantic-map",
@@ -250,4 +252,15 @@ TEST(Rawlog2SemanticMapWithSlam, saysWhyAReferenceCannotBeUsed) {
   semantic_octree::saveTree(SemanticOcTree(0.2, things), other);
   fails(other, "class table is another one");
   EXPECT_EQ(street.map("out", {"--reference", other}).status, 64) << "needs --slam";
+}
+
+TEST(Rawlog2SemanticMapWithSlam, scansThatTakeTimeAreDeskewedAlsoWherePosesAreRight) {
+  const Street still, turning("1");  // a meter a turn
+  ASSERT_EQ(still.map("out", {}).status, 0);
+  const SemanticOcTree right = semantic_octree::loadTree(still.folder / "out/map.semantic");
+  for (const Words& how : {Words{}, Words{"--slam"}}) {
+    ASSERT_EQ(turning.map("out", how).status, 0);
+    const auto map = semantic_octree::loadTree(turning.folder / "out/map.semantic");
+    EXPECT_GT(shareOccupiedIn(right, map), 0.65) << how.size();
+  }
 }

@@ -115,7 +115,7 @@ void readPointFields(const std::string& bytes) {
     for (; size > 0; --size) n = n << 8 | (at < bytes.size() ? std::uint8_t(bytes[at++]) : 0);
     return n;
   };
-  const std::vector<std::string> names = {"x", "y", "z", "label", "rgb"};
+  const std::vector<std::string> names = {"x", "y", "z", "label", "rgb", "t"};
   point_fields::RawCloud raw;
   for (std::uint32_t fields = number(1) % 8; fields > 0; --fields) {
     const std::string name = names[number(1) % names.size()];
@@ -130,6 +130,7 @@ void readPointFields(const std::string& bytes) {
   for (const char* field : {"label", "rgb"}) {
     std::string problem;
     point_fields::cloudOf(raw, field, fuzzedClasses(), problem);
+    point_fields::timesOf(raw, 1);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "Conversions.h"
@@ -107,9 +108,21 @@ TEST(UnlabeledClouds, rawVelodynePacketsAreUnpacked) {
     for (const auto& obs : entry->observations)
       if (dynamic_cast<const mrpt::obs::CObservationVelodyneScan*>(obs.get())) {
         ++scans;
-        EXPECT_GT(convert(*obs).counts.points, 10000u);
+        const auto scan = convert(*obs);
+        EXPECT_GT(scan.counts.points, 10000u);
+        ASSERT_EQ(scan.times.size(), scan.cloud.size());
+        const auto [first, last] = std::minmax_element(scan.times.begin(), scan.times.end());
+        EXPECT_NEAR(*first, 0, 1e-3);
+        EXPECT_NEAR(*last, 0.1, 0.03) << "ten turns a second";
       }
   EXPECT_GT(scans, 0u);
+}
+
+TEST(LabeledClouds, pointsThatAreReturnsKeepTheirTimes) {
+  CObservationLabeledCloud obs;
+  obs.cloud.points = {{1, 0, 0}, {0, 0, 0}, {NAN, 0, 0}, {2, 0, 0}};
+  obs.times = {0.1f, 0.2f, 0.3f, -0.4f};
+  EXPECT_EQ(convert(obs).times, (std::vector<float>{0.1f, -0.4f}));
 }
 
 TEST(UnlabeledClouds, laserScansLieInTheSensorsPlaneAsMrptItselfPutsThem) {

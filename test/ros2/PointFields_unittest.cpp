@@ -126,3 +126,43 @@ TEST(PointFields, refuseWhatIsNoCloud) {
   EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.width = r.height = r.rowStep = 4294967295u; }),
                        "bytes are no"));
 }
+
+namespace {
+
+/** The times of points with a field. \param fieldType sensor_msgs/PointField's number */
+template <class T>
+std::vector<float> timesWith(const std::string& name, int fieldType, const std::vector<T>& values) {
+  Bytes bytes;
+  for (const T value : values) bytes.add(1.0f).add(2.0f).add(3.0f).add(value);
+  const std::vector<RawCloud::Field> fields = {
+      {"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {name, 12, fieldType}};
+  return timesOf(
+      rawOf(bytes.all, fields, static_cast<std::uint32_t>(values.size()), 12 + sizeof(T)), 1.7e9);
+}
+
+}  // namespace
+
+TEST(PointFields, timesAreThoseOfTheDriversThatAreKnown) {
+  const std::vector<float> late = {0, 0.05f, 0.1f}, early = {-0.1f, -0.05f, 0};
+  const auto areNear = [](const std::vector<float>& a, const std::vector<float>& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
+             return std::abs(x - y) < 1e-6f;
+           });
+  };
+  EXPECT_TRUE(areNear(timesWith<std::uint32_t>("t", 6, {0, 50'000'000, 100'000'000}), late));
+  EXPECT_TRUE(areNear(timesWith<float>("time", 7, {-0.1f, -0.05f, 0}), early));
+  EXPECT_TRUE(
+      areNear(timesWith<double>("timestamp", 8, {1.7e9 - 0.1, 1.7e9 - 0.05, 1.7e9}), early));
+  EXPECT_TRUE(
+      areNear(timesWith<double>("timestamp", 8, {1.7e18, 1.7e18 + 5e7, 1.7e18 + 1e8}), late));
+  EXPECT_TRUE(timesWith<double>("time", 8, {0, 0.1, 3600}).empty()) << "no time within a second";
+  EXPECT_TRUE(timesWith<double>("time", 8, {0, NAN}).empty());
+  EXPECT_TRUE(timesWith<float>("intensity", 7, {0, 0.1f}).empty());
+}
+
+TEST(PointFields, pointsThatAreLeftOutHaveNoTimes) {
+  Bytes bytes;
+  for (const float x : {1.f, NAN, 3.f}) bytes.add(x).add(2.0f).add(3.0f).add(x / 10);
+  const std::vector<RawCloud::Field> fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"t", 12, 7}};
+  EXPECT_EQ(timesOf(rawOf(bytes.all, fields, 3, 16), 0), (std::vector<float>{0.1f, 0.3f}));
+}

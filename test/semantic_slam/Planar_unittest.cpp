@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "Recordings.h"
+#include "TemporaryFolder.h"
 
 using namespace recordings;
 using semantic_octree::SemanticOcTree;
@@ -138,6 +139,12 @@ TEST(Planar, aLaserScannersLoopCloses) {
   EXPECT_LT(e.rootMeanSquare, 0.045);
   EXPECT_LT(e.last, 0.06);
   EXPECT_LT(e.degrees, 0.2);
+  const TemporaryFolder folder;
+  Slam inFile({}, folder.path());
+  addAll(inFile, r, kRobotLaser);
+  EXPECT_TRUE(slam.finish() && inFile.finish()) << "loops wait for it";
+  for (std::size_t k = 0; k < slam.poses().size(); ++k)
+    EXPECT_EQ(inFile.poses()[k].matrix(), slam.poses()[k].matrix()) << k;
 }
 
 TEST(Planar, anApertureThatIsSaidToBeHalfIsNoticed) {

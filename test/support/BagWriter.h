@@ -56,14 +56,15 @@ struct BagMessage {
   std::string bytes;
 };
 
-/** Points with a label of 16 bits each; the first field stands behind two bytes of something else.
- */
+/** Points with a label, or another field, of 16 bits each; the first field stands behind two bytes
+ * of something else. */
 inline BagMessage cloudMessage(const std::string& topic, double seconds, const std::string& frame,
-                               const std::vector<Eigen::Vector4f>& points, bool bigEndian = false) {
+                               const std::vector<Eigen::Vector4f>& points, bool bigEndian = false,
+                               const char* fourth = "label") {
   Cdr cdr(bigEndian);
   cdr.header(seconds, frame).number(std::uint32_t(1)).number(std::uint32_t(points.size()));
   cdr.number(std::uint32_t(4));
-  const char* names[] = {"x", "y", "z", "label"};
+  const char* names[] = {"x", "y", "z", fourth};
   for (int i = 0; i < 4; ++i)
     cdr.text(names[i])
         .number(std::uint32_t(2 + 4 * i))

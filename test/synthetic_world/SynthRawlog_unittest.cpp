@@ -71,6 +71,27 @@ TEST(SynthRawlog, unprojectedDepthsLandOnSurfacesOfTheirLabels) {
   }
 }
 
+TEST(SynthRawlog, pointsOfATurnThatTakesTimeLandOnSurfacesFromWhereTheRobotIsByThen) {
+  const Folder folder;
+  ASSERT_EQ(
+      run(folder, "-f -o x.rawlog --sensor lidar --range-noise 0 --turn-time 0.5" + kSmall).status,
+      0);
+  const auto scene = makeScene("village", 1);
+  const synthetic_world::Drive drive(scene, 8);
+  const auto clouds = only<CObservationLabeledCloud>(observationsOf(folder / "x.rawlog"));
+  for (int k = 0; k < 3; ++k) {
+    const auto T_robot_lidar = labeled_cloud::toEigen(clouds[k]->sensorPose);
+    ASSERT_EQ(clouds[k]->times.size(), clouds[k]->cloud.size());
+    for (std::size_t i = 0; i < clouds[k]->times.size(); ++i) {
+      const float t = clouds[k]->times[i];
+      EXPECT_TRUE(t >= 0 && t < 0.5) << t;
+      const Eigen::Vector3d p = drive.T_world_robot(k + static_cast<double>(t)) * T_robot_lidar *
+                                clouds[k]->cloud.points[i].cast<double>();
+      EXPECT_EQ(scene.world.at(p, 1e-3).state, PointTruth::State::Surface) << p.transpose();
+    }
+  }
+}
+
 TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   const Folder folder;
   const std::string noise = kSmall + " --label-noise 0.1 --dropout 0.1 ";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace point_fields {
 
@@ -97,7 +98,50 @@ void checkSize(const RawCloud& raw) {
                              " points of " + std::to_string(raw.pointStep) + " bytes");
 }
 
+/** The points that are finite, and their bytes. */
+struct FinitePoints {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<const std::uint8_t*> bytes;
+
+  explicit FinitePoints(const RawCloud& raw) {
+    const FieldReader x = coordinate(raw, "x"), y = coordinate(raw, "y"), z = coordinate(raw, "z");
+    checkSize(raw);
+    const std::uint32_t rows = raw.width > 0 ? raw.height : 0;
+    for (std::uint32_t row = 0; row < rows; ++row)
+      for (std::uint32_t column = 0; column < raw.width; ++column) {
+        const std::uint8_t* point =
+            raw.data + std::size_t(row) * raw.rowStep + std::size_t(column) * raw.pointStep;
+        const Eigen::Vector3f p =
+            Eigen::Vector3d(x.number(point), y.number(point), z.number(point)).cast<float>();
+        if (!p.allFinite()) continue;
+        points.push_back(p);
+        bytes.push_back(point);
+      }
+  }
+};
+
 }  // namespace
+
+std::vector<float> timesOf(const RawCloud& raw, double stamp) {
+  constexpr double kLongest = 1;  // s between a point and its scan's stamp
+  const RawCloud::Field* field = nullptr;
+  for (const char* name : {"t", "time", "timestamp", "time_stamp", "time_offset", "offset_time"})
+    if (!field) field = find(raw, name);
+  if (!field) return {};
+  const FieldReader reader(raw, *field);
+  std::vector<double> numbers;
+  for (const std::uint8_t* point : FinitePoints(raw).bytes) numbers.push_back(reader.number(point));
+  const double unit = field->type < 7 ? 1e-9 : 1;
+  const std::pair<double, double> readings[] = {{unit, 0}, {unit, stamp}, {1e-9, stamp}};
+  for (const auto& [seconds, zero] : readings) {
+    std::vector<float> times;
+    for (const double n : numbers)
+      if (std::abs(n * seconds - zero) <= kLongest)
+        times.push_back(static_cast<float>(n * seconds - zero));
+    if (times.size() == numbers.size()) return times;
+  }
+  return {};
+}
 
 ClassId NumberedClasses::at(double number) {
   if (m_lastClass && number == m_last) return *m_lastClass;
@@ -128,21 +172,9 @@ ClassId NumberedClasses::find(double number) {
 
 LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField, const ClassTable& table,
                      std::string& problem) {
-  const FieldReader x = coordinate(raw, "x"), y = coordinate(raw, "y"), z = coordinate(raw, "z");
-  checkSize(raw);
+  FinitePoints finite(raw);
   LabeledCloud cloud;
-  std::vector<const std::uint8_t*> places;
-  const std::uint32_t rows = raw.width > 0 ? raw.height : 0;
-  for (std::uint32_t row = 0; row < rows; ++row)
-    for (std::uint32_t column = 0; column < raw.width; ++column) {
-      const std::uint8_t* point =
-          raw.data + std::size_t(row) * raw.rowStep + std::size_t(column) * raw.pointStep;
-      const Eigen::Vector3f p =
-          Eigen::Vector3d(x.number(point), y.number(point), z.number(point)).cast<float>();
-      if (!p.allFinite()) continue;
-      cloud.points.push_back(p);
-      places.push_back(point);
-    }
+  cloud.points = std::move(finite.points);
   const RawCloud::Field* field = find(raw, classField);
   if (!field) {
     problem = "the points have no field '" + classField + "': they are without classes";
@@ -151,8 +183,8 @@ LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField, const C
   const bool areColors = field->name == "rgb" || field->name == "rgba";
   const FieldReader reader(raw, *field);
   NumberedClasses classes(table, areColors);
-  cloud.classes.reserve(places.size());
-  for (const std::uint8_t* point : places)
+  cloud.classes.reserve(cloud.size());
+  for (const std::uint8_t* point : finite.bytes)
     cloud.classes.push_back(classes.at(areColors ? reader.color(point) : reader.number(point)));
   if (!classes.problem().empty())
     problem =

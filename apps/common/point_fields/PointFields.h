@@ -33,6 +33,13 @@ struct RawCloud {
 semantic_types::LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField,
                                      const semantic_types::ClassTable& table, std::string& problem);
 
+/** When each point of cloudOf() was taken, seconds after the message's stamp, by a field "t",
+ * "time", "timestamp", "time_stamp", "time_offset" or "offset_time": whole numbers are nanoseconds,
+ * others seconds, since the stamp or since 1970 (then also nanoseconds). Empty: there is no such
+ * field, or no reading of it has all points within a second of the stamp. \param stamp seconds
+ * since 1970 \throw std::runtime_error as cloudOf() */
+std::vector<float> timesOf(const RawCloud& raw, double stamp);
+
 /** Classes of a message's points or pixels by the numbers that they have; each number is looked up
  * once. */
 class NumberedClasses {

@@ -176,12 +176,14 @@ class SemanticMapComponent : public rclcpp::Node {
     raw.isBigEndian = message.is_bigendian;
     raw.data = message.data.data(), raw.size = message.data.size();
     std::string problem;
-    const auto cloud = cloudOf(raw, node.classField, m_map.classes(), problem);
+    semantic_slam::SensorScan scan{cloudOf(raw, node.classField, m_map.classes(), problem),
+                                   T_robot_cloud};
+    scan.times = timesOf(raw, stamp.seconds());
     if (!problem.empty()) warn(problem);
     const auto time = mrpt::Clock::fromDouble(stamp.seconds());
     m_seconds += m_clock.secondsUntil(time);
     m_clock.note(time);
-    m_mapper.insert(cloud, T_robot_cloud, T_world_robot, m_seconds);
+    m_mapper.insert(scan, T_world_robot, m_seconds);
     ++m_scans;
     m_stamp = stamp;
     if (node.slam) sayCorrection();

@@ -42,14 +42,6 @@ Points pointsOf(const CObservationPointCloud& observation) {
              cloud.getPointsBufferRef_z());
 }
 
-Points pointsOf(const CObservationVelodyneScan& observation) {
-  CObservationVelodyneScan unpacked;
-  const bool ready = observation.point_cloud.size() > 0;
-  if (!ready) unpacked = observation, unpacked.generatePointCloud();
-  const auto& cloud = ready ? observation.point_cloud : unpacked.point_cloud;
-  return zip(cloud.x, cloud.y, cloud.z);
-}
-
 Points pointsOf(const CObservation2DRangeScan& scan) {
   const std::size_t beams = scan.getScanSize();
   const double turn = scan.rightToLeft ? 1 : -1;
@@ -90,7 +82,26 @@ NamedCloud cloudOf(const Observation& observation) {
 
 NamedCloud cloudOf(const CObservationLabeledCloud& observation) {
   observation.validate();
-  return {observation.cloud, observation.classNames, {}};
+  return {observation.cloud, observation.classNames, {}, observation.times};
+}
+
+NamedCloud cloudOf(const CObservationVelodyneScan& observation) {
+  CObservationVelodyneScan unpacked;
+  const bool ready = observation.point_cloud.size() > 0;
+  if (!ready) {
+    CObservationVelodyneScan::TGeneratePointCloudParameters withTimes;
+    withTimes.generatePerPointTimestamp = true;
+    unpacked = observation;
+    unpacked.generatePointCloud(withTimes);
+  }
+  const auto& cloud = ready ? observation.point_cloud : unpacked.point_cloud;
+  NamedCloud named;
+  named.cloud.points = zip(cloud.x, cloud.y, cloud.z);
+  for (const auto& time : cloud.timestamp)
+    named.times.push_back(
+        static_cast<float>(mrpt::system::timeDifference(observation.timestamp, time)));
+  if (named.times.size() != named.cloud.size()) named.times.clear();
+  return named;
 }
 
 template <typename Observation>

@@ -245,6 +245,7 @@ void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (!PointGrid::isReturn(from.points[i])) continue;
     to.points.push_back(from.points[i]);
+    if (!named.times.empty()) scan.times.push_back(named.times.at(i));
     if (!from.classes.empty()) to.classes.push_back(translate(from.classes.at(i)));
     if (classes > 0)
       appendTranslated(&from.probabilities[i * classes], classes, translate, m_table.size(),

@@ -209,10 +209,11 @@ void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
   m_mapper.age(seconds);
   focus();
   m_insertingFrom = seconds;
-  const Mapper::Place at = locate(seen);
-  auto fillMap = [this, lasting = withoutPassing(seen), left = m_movers.takeLeft(), at, seconds] {
-    return fill(lasting, at, left, seconds);
-  };
+  const Mapper::Place at = locate(seen, seconds);
+  std::vector<SensorScan> straight;
+  for (const SensorScan& scan : seen) straight.push_back(deskewed(scan, at.velocity));
+  auto fillMap = [this, lasting = withoutPassing(std::move(straight)), left = m_movers.takeLeft(),
+                  at, seconds] { return fill(lasting, at, left, seconds); };
   if (m_options.mappingLatency == 0) {
     m_inserting = std::async(std::launch::deferred, std::move(fillMap));
     return finish();
@@ -224,21 +225,20 @@ void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
   m_inserting = std::async(std::launch::async, std::move(fillMap));
 }
 
-Mapper::Place Navigator::locate(const std::vector<SensorScan>& seen) {
+Mapper::Place Navigator::locate(const std::vector<SensorScan>& seen, double seconds) {
   ThreadClock clock;
-  const Mapper::Place at = m_mapper.locate(seen, m_robot.T_odometry_robot);
+  const Mapper::Place at = m_mapper.locate(seen, m_robot.T_odometry_robot, seconds);
   if (!at.added) return at;
   correctState();
   note("localize", clock.lap());
   return at;
 }
 
-std::vector<SensorScan> Navigator::withoutPassing(const std::vector<SensorScan>& seen) const {
+std::vector<SensorScan> Navigator::withoutPassing(std::vector<SensorScan> seen) const {
   const Eigen::Isometry3d T_map_robot = m_mapper.T_map_odometry() * m_robot.T_odometry_robot;
-  std::vector<SensorScan> lasting = seen;
-  for (SensorScan& scan : lasting)
+  for (SensorScan& scan : seen)
     scan.cloud = m_movers.withoutPassing(scan.cloud, T_map_robot * scan.T_robot_sensor);
-  return lasting;
+  return seen;
 }
 
 /** Nothing is where the robot is, and nobody where somebody was who walked away: sensors that do

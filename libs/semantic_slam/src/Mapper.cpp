@@ -14,7 +14,7 @@ Mapper::Mapper(SemanticOcTree& map, const MapperOptions& options, const Semantic
     : m_map(map), m_options(options), m_calibrator(map.getResolution(), map.numClasses()) {
   m_options.insertion.validate();
   if (!m_options.localize) return;
-  m_slam.emplace(m_options.slam);
+  m_slam.emplace(m_options.slam, m_options.scans);
   if (!map.empty() && !reference) reference = &map;
   if (reference) m_slam->setReference(*reference);
   if (!map.empty()) return;
@@ -23,16 +23,24 @@ Mapper::Mapper(SemanticOcTree& map, const MapperOptions& options, const Semantic
 }
 
 auto Mapper::locate(const std::vector<SensorScan>& seen,
-                    const std::optional<Eigen::Isometry3d>& T_odometry_robot) -> Place {
+                    const std::optional<Eigen::Isometry3d>& T_odometry_robot, double seconds)
+    -> Place {
   if (!m_slam && !T_odometry_robot)
     throw std::invalid_argument("Mapper: scans without a pose of odometry need localize");
-  if (!m_slam) return {*T_odometry_robot, {}};
+  if (!m_slam) {
+    Place place{*T_odometry_robot, {}};
+    if (m_last && seconds > m_last->second)
+      place.velocity =
+          velocityOf(m_last->first.inverse() * place.T_map_robot, seconds - m_last->second);
+    m_last = {place.T_map_robot, seconds};
+    return place;
+  }
   std::optional<Eigen::Isometry3d> T_start_robot;
   if (T_odometry_robot) T_start_robot = m_T_start_odometry * *T_odometry_robot;
-  const Slam::Added added = addToSlam(seen, T_start_robot);
+  const Slam::Added added = addToSlam(seen, T_start_robot, seconds);
   const Eigen::Isometry3d T_map_robot = m_slam->poses().back() * added.T_keyframe_robot;
   if (T_odometry_robot) m_T_map_odometry = T_map_robot * T_odometry_robot->inverse();
-  return {T_map_robot, added};
+  return {T_map_robot, added, added.velocity};
 }
 
 void Mapper::relocalize(const Eigen::Isometry3d& T_map_odometry) {
@@ -41,20 +49,24 @@ void Mapper::relocalize(const Eigen::Isometry3d& T_map_odometry) {
   if (m_slam->poses().empty()) return;
   finish();
   m_keyframes = nullptr;
-  m_slam.emplace(m_options.slam);
+  m_slam.emplace(m_options.slam, m_options.scans);
   m_slam->setReference(m_map);
 }
 
 Slam::Added Mapper::addToSlam(const std::vector<SensorScan>& seen,
-                              const std::optional<Eigen::Isometry3d>& T_odometry_robot) {
+                              const std::optional<Eigen::Isometry3d>& T_odometry_robot,
+                              double seconds) {
   if (seen.size() == 1 && m_isMover.empty() && !std::isfinite(seen[0].emptyFrom))
-    return m_slam->add(seen[0].cloud, seen[0].T_robot_sensor, T_odometry_robot);
-  return m_slam->add(evidenceOf(seen), Eigen::Isometry3d::Identity(), T_odometry_robot);
+    return m_slam->add(seen[0], T_odometry_robot, seconds);
+  return m_slam->add(evidenceOf(seen), T_odometry_robot, seconds);
 }
 
 /** Returns of what does not move, frame of the robot. */
-LabeledCloud Mapper::evidenceOf(const std::vector<SensorScan>& seen) const {
-  LabeledCloud cloud;
+SensorScan Mapper::evidenceOf(const std::vector<SensorScan>& seen) const {
+  const bool haveTimes = std::any_of(seen.begin(), seen.end(),
+                                     [](const SensorScan& scan) { return !scan.times.empty(); });
+  SensorScan evidence;
+  LabeledCloud& cloud = evidence.cloud;
   for (const SensorScan& scan : seen)
     for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
       const auto id = scan.cloud.classes.empty() ? semantic_types::kNoClass : scan.cloud.classes[i];
@@ -63,8 +75,9 @@ LabeledCloud Mapper::evidenceOf(const std::vector<SensorScan>& seen) const {
       cloud.points.push_back(
           (scan.T_robot_sensor * scan.cloud.points[i].cast<double>()).cast<float>());
       cloud.classes.push_back(id);
+      if (haveTimes) evidence.times.push_back(scan.times.empty() ? 0 : scan.times.at(i));
     }
-  return cloud;
+  return evidence;
 }
 
 bool Mapper::isLeftOut(const Place& place) {
@@ -79,10 +92,13 @@ auto Mapper::insert(const std::vector<SensorScan>& seen, const Place& place, dou
   if (m_keyframes && place.added->isNew) m_keyframes->begin(m_slam->poses().back());
   if (!isLeftOut(place))
     for (const SensorScan& scan : seen) {
-      inserted.scans.push_back(insertAt(place, scan.cloud, scan.T_robot_sensor, m_options.insertion,
-                                        secondsUntil(seconds)));
+      const SensorScan straight =
+          scan.times.empty() ? SensorScan() : deskewed(scan, place.velocity);
+      const LabeledCloud& cloud = (scan.times.empty() ? scan : straight).cloud;
+      inserted.scans.push_back(
+          insertAt(place, cloud, scan.T_robot_sensor, m_options.insertion, secondsUntil(seconds)));
       m_agedAt = std::max(seconds, m_agedAt.value_or(seconds));
-      m_calibrator.add(scan.cloud, place.T_map_robot * scan.T_robot_sensor, m_options.insertion);
+      m_calibrator.add(cloud, place.T_map_robot * scan.T_robot_sensor, m_options.insertion);
       if (++m_numScans < m_calibrateAt) continue;
       calibrate();
       m_calibrateAt *= 2;

@@ -31,17 +31,21 @@ Matrix6 adjoint(const Eigen::Isometry3d& T) {
   return m;
 }
 
-/** How vectorOf(T poseOf(x)) changes with x, at x = 0 and v = vectorOf(T). */
-Matrix6 derivativeAt(const Vector6& v) {
-  const Eigen::Vector3d turn = v.tail<3>();
+/** How the vector of a turn changes with a small turn behind it. */
+Eigen::Matrix3d turnDerivativeAt(const Eigen::Vector3d& turn) {
   const Eigen::Matrix3d cross = crossMatrix(turn);
   const double angle = turn.norm();
   const double factor =
       angle < 1e-4 ? 1.0 / 12
                    : 1 / (angle * angle) - (1 + std::cos(angle)) / (2 * angle * std::sin(angle));
+  return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
+}
+
+/** How vectorOf(T poseOf(x)) changes with x, at x = 0 and v = vectorOf(T). */
+Matrix6 derivativeAt(const Vector6& v) {
   Matrix6 m = Matrix6::Zero();
   m.topLeftCorner<3, 3>() = poseOf(v).linear();
-  m.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
+  m.bottomRightCorner<3, 3>() = turnDerivativeAt(v.tail<3>());
   return m;
 }
 
@@ -161,6 +165,19 @@ Vector6 vectorOf(const Eigen::Isometry3d& T) {
   Vector6 v;
   v << T.translation(), turn.angle() * turn.axis();
   return v;
+}
+
+Eigen::Isometry3d movedFor(double seconds, const Vector6& velocity) {
+  const Vector6 v = seconds * velocity;
+  Eigen::Isometry3d T = poseOf(v);
+  T.translation() = turnDerivativeAt(-v.tail<3>()).inverse() * v.head<3>();
+  return T;
+}
+
+Vector6 velocityOf(const Eigen::Isometry3d& T_before_after, double seconds) {
+  Vector6 v = vectorOf(T_before_after);
+  v.head<3>() = turnDerivativeAt(-v.tail<3>()) * v.head<3>();
+  return v / seconds;
 }
 
 Eigen::Isometry3d rigid(const Eigen::Isometry3d& T) {

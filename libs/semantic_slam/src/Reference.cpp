@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "SensorScale.h"
+
 namespace semantic_slam {
 namespace {
 
@@ -34,18 +36,9 @@ Reference::Reference(const SemanticOcTree& map, std::vector<double> cellSizes, b
 
 double Reference::deviation() const { return m_voxelSize / std::sqrt(12); }
 
-std::vector<Submap> Reference::submapsOf(const LabeledCloud& cloud, bool isPlanar) const {
-  std::vector<Submap> submaps;
-  for (const double size : m_cellSizes) {
-    submaps.emplace_back(size, m_useClasses, isPlanar);
-    submaps.back().add(cloud, Eigen::Isometry3d::Identity(), deviation());
-    submaps.back().finish();
-  }
-  return submaps;
-}
-
 const std::vector<Submap>& Reference::inSpace() {
-  if (m_isSlice || m_submaps.empty()) m_submaps = submapsOf(m_voxels, false);
+  if (m_isSlice || m_submaps.empty())
+    m_submaps = submapsOf(m_voxels, m_cellSizes, m_useClasses, false, deviation());
   m_isSlice = false;
   return m_submaps;
 }
@@ -72,7 +65,7 @@ const std::vector<Submap>& Reference::sliceAt(const LabeledCloud& scan,
     cloud.points.push_back(m_voxels.points[i]);
     cloud.classes.push_back(m_voxels.classes[i]);
   }
-  m_submaps = submapsOf(cloud, true);
+  m_submaps = submapsOf(cloud, m_cellSizes, m_useClasses, true, deviation());
   m_layers = layers;
   m_isSlice = true;
   return m_submaps;

@@ -32,15 +32,24 @@ SensorScale SensorScale::of(const LabeledCloud& cloud, bool isPlanar) {
           0.5 * size, {2 * size, size}, 0.4 * size,   30 * size, 0.6};
 }
 
+std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells,
+                              bool useClasses, bool isPlanar, double deviation) {
+  std::vector<Submap> submaps;
+  for (const double size : cells) {
+    Submap& submap = submaps.emplace_back(size, useClasses, isPlanar);
+    submap.add(cloud, Eigen::Isometry3d::Identity(), deviation);
+    submap.finish();
+  }
+  return submaps;
+}
+
 void LocalMap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_last_keyframe,
                    const SensorScale& scale, bool useClasses) {
   const auto most = static_cast<std::size_t>(scale.submapKeyframes);
   for (Part& part : m_parts) part.poses.push_back(rigid(part.poses.back() * T_last_keyframe));
   if (m_parts.empty() || (m_parts.size() == 1 && m_parts[0].poses.size() > most)) {
-    Part& part = m_parts.emplace_back();
-    for (const double size : scale.cells)
-      part.submaps.emplace_back(size, useClasses, scale.isPlanar);
-    part.poses.push_back(Eigen::Isometry3d::Identity());
+    m_parts.push_back(
+        {submapsOf({}, scale.cells, useClasses, scale.isPlanar), {Eigen::Isometry3d::Identity()}});
   }
   for (Part& part : m_parts)
     for (Submap& submap : part.submaps) {

@@ -30,6 +30,10 @@ struct SensorScale {
   static SensorScale of(const LabeledCloud& cloud, bool isPlanar);
 };
 
+/** Of the same points, one for each edge of cubes (m). */
+std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells,
+                              bool useClasses, bool isPlanar, double deviation = 0);
+
 /** What the last keyframes saw, for the next scan to be registered to. It grows with each keyframe;
  * where it has twice as many as are wanted, a second one, which began half way, takes its place
  * (Hess et al., 2016). Poses in it stay as they were registered, whatever becomes of the graph. */

@@ -3,6 +3,8 @@
 #include <semantic_slam/SlamOptions.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "SlamEngine.h"
 
@@ -25,6 +27,24 @@ std::string asOfBeams(double turnError) {
 }
 
 }  // namespace
+
+SensorScan deskewed(SensorScan scan, const Vector6& velocity, double at) {
+  const std::vector<float> times = std::exchange(scan.times, {});
+  if (times.empty() || velocity == Vector6::Zero()) return scan;
+  if (times.size() != scan.cloud.size())
+    throw std::invalid_argument("a scan with " + std::to_string(times.size()) + " times of " +
+                                std::to_string(scan.cloud.size()) + " points");
+  const Eigen::Isometry3d T_sensor_robot = scan.T_robot_sensor.inverse();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  double since = 0;  // beams of one firing have one time
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (const double s = static_cast<double>(times[i]) - at; s != since)
+      T = T_sensor_robot * movedFor(since = s, velocity) * scan.T_robot_sensor;
+    Eigen::Vector3f& p = scan.cloud.points[i];
+    if (since != 0) p = (T * p.cast<double>()).cast<float>();
+  }
+  return scan;
+}
 
 std::vector<std::string> SlamReport::warnings() const {
   constexpr double kMostLost = 0.05, kMostWrong = 0.15;
@@ -80,18 +100,18 @@ SlamReport SlamEngine::report() const {
   return report;
 }
 
-Slam::Slam(const SlamOptions& options) {
+Slam::Slam(const SlamOptions& options, const std::filesystem::path& folder) {
   options.validate();
-  m = std::make_unique<SlamEngine>(options);
+  m = std::make_unique<SlamEngine>(options, folder);
 }
 Slam::~Slam() = default;
 Slam::Slam(Slam&&) noexcept = default;
 
 void Slam::setReference(const semantic_octree::SemanticOcTree& map) { m->setReference(map); }
 
-Slam::Added Slam::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
-                      const std::optional<Eigen::Isometry3d>& T_odometry_robot) {
-  return m->add(cloud, T_robot_sensor, T_odometry_robot);
+Slam::Added Slam::add(const SensorScan& scan,
+                      const std::optional<Eigen::Isometry3d>& T_odometry_robot, double seconds) {
+  return m->add(scan, T_odometry_robot, seconds);
 }
 
 bool Slam::finish() { return m->finish(); }

@@ -1,6 +1,7 @@
 #pragma once
 #include <semantic_slam/Reference.h>
 #include <semantic_slam/Slam.h>
+#include <strict_files/OutputFiles.h>
 
 #include "MotionNoise.h"
 #include "PlaneSearch.h"
@@ -12,6 +13,9 @@ namespace semantic_slam {
 constexpr double kCovered = 0.3;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);
+/** x, y (m) and heading (radians). */
+Eigen::Vector3d flatOf(const Eigen::Isometry3d& T);
+Eigen::Isometry3d poseOfFlat(const Eigen::Vector3d& flat, double z = 0);
 
 /** What Slam does: tracking (SlamTracking.cpp), loops and the reference
  * (SlamLoops.cpp), pieces (SlamPieces.cpp). */
@@ -19,10 +23,12 @@ class SlamEngine {
  public:
   using Pose = Eigen::Isometry3d;
 
-  explicit SlamEngine(const SlamOptions& options) : m_options(options) {}
+  SlamEngine(const SlamOptions& options, const std::filesystem::path& folder) : m_options(options) {
+    if (!folder.empty()) m_file.emplace(folder);
+  }
   void setReference(const semantic_octree::SemanticOcTree& map);
-  Slam::Added add(const LabeledCloud& cloud, const Pose& T_robot_sensor,
-                  const std::optional<Pose>& T_odometry_robot);
+  Slam::Added add(const SensorScan& scan, const std::optional<Pose>& T_odometry_robot,
+                  double seconds);
   bool finish();
   const std::vector<Pose>& poses() const { return m_poses; }
   const std::vector<PoseEdge>& edges() const { return m_edges; }
@@ -35,9 +41,14 @@ class SlamEngine {
     Pose T_odometry_robot;
   };
   struct Keyframe {
-    Seen seen;
+    Seen seen;   ///< without the cloud, if that is in the file
     double way;  ///< from the first one, m
+    std::uint64_t place;
+    std::size_t numPoints;
   };
+  /** Appends a keyframe. */
+  void keep(Seen seen);
+  Seen seenAt(std::size_t keyframe) const;
 
   // --- Tracking ---
   void setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor);
@@ -46,6 +57,15 @@ class SlamEngine {
   bool isSmall(const Pose& T_step) const;
   /** From the last scan to this one, if the robot goes on as before. */
   Pose goingOn() const;
+  /** A scan that took time counts as one of the middle of it: what is wrong with the velocity then
+   * cancels, but for the pose at the time of the scan. \param middle seconds after that */
+  Slam::Added addAsOf(double middle, const SensorScan& scan,
+                      const std::optional<Pose>& T_odometry_robot, double seconds);
+  /** \param velocity what it is deskewed by */
+  Seen seenIn(const SensorScan& scan, double middle, const Vector6& velocity,
+              const Pose& T_odometry) const;
+  /** The robot's first motion is known now: the first scan is deskewed by it. */
+  void straightenFirst(const Vector6& velocity);
   Slam::Added beginFirst(const Seen& seen);
   void begin(const Seen& seen, const Pose& T_map_robot, const Pose& T_last_keyframe);
   bool beginsKeyframe(const Pose& T_last_robot) const;
@@ -74,6 +94,13 @@ class SlamEngine {
   Matrix6 levelOf(const Pose& T_odometry_robot) const;
   /** Height, roll and pitch as odometry has them. */
   Pose levelled(const Pose& T_map_robot, const Pose& T_odometry_robot) const;
+  std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells) const {
+    return semantic_slam::submapsOf(cloud, cells, m_options.useClasses, m_scale.isPlanar);
+  }
+  /** What a search in a plane compares, see there. */
+  PlanePoints upright(const LabeledCloud& cloud) const {
+    return uprightPoints(cloud, m_scale.isPlanar, m_scale.gridCell);
+  }
   Registration match(const std::vector<Submap>& submaps, const Seen& seen,
                      const Pose& T_submap_guess, const Matrix6& prior) const;
 
@@ -123,6 +150,7 @@ class SlamEngine {
   double worstStep() const;
 
   SlamOptions m_options;
+  std::optional<strict_files::ScratchFile> m_file;  ///< of keyframes' clouds
   SensorScale m_scale;
   std::vector<Keyframe> m_keyframes;
   std::vector<Pose> m_poses;
@@ -138,6 +166,9 @@ class SlamEngine {
   Pose m_T_odometry_step = Pose::Identity();   ///< to this scan, as odometry says
   Pose m_T_keyframe_found = Pose::Identity();  ///< of the last scan that was registered
   Pose m_T_standing = Pose::Identity();        ///< by scans, since odometry moved
+  double m_lastSeconds = 0;                    ///< when
+  Vector6 m_velocity = Vector6::Zero();        ///< then, robot's frame
+  SensorScan m_first;                          ///< until its velocity is known, if it has times
   int m_lostInRow = 0;                         ///< scans since then
   int m_stepScans = 1;                         ///< scans from the registration before to the last
   int m_numSmall = 0;                          ///< small steps since the last registration

@@ -31,8 +31,6 @@ constexpr double kNear = 0.05, kNearAngle = 0.5 * kDegree;
 /** Squared error of a step between keyframes that loops may leave. */
 constexpr double kTorn = 100, kTornMore = 1.5;
 
-double headingOf(const Eigen::Isometry3d& T) { return std::atan2(T(1, 0), T(0, 0)); }
-
 }  // namespace
 
 void SlamEngine::setReference(const semantic_octree::SemanticOcTree& map) {
@@ -45,7 +43,7 @@ auto SlamEngine::pointsOf(std::size_t first, std::size_t last, std::size_t frame
   Seen all{{}, m_keyframes[frame].seen.T_odometry_robot};
   for (std::size_t k = first; k <= last; ++k) {
     const Eigen::Isometry3f T = (m_poses[frame].inverse() * m_poses[k]).cast<float>();
-    const LabeledCloud& cloud = m_keyframes[k].seen.cloud;
+    const LabeledCloud cloud = seenAt(k).cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i) all.cloud.points.push_back(T * cloud.points[i]);
     all.cloud.classes.insert(all.cloud.classes.end(), cloud.classes.begin(), cloud.classes.end());
   }
@@ -118,21 +116,17 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
     ++last;
   const Seen then = pointsOf(place - std::min(place, beside), last, place);
   const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
-  const auto upright = [this](const LabeledCloud& cloud) {
-    return uprightPoints(cloud, m_scale.isPlanar, m_scale.gridCell);
-  };
   // Seen from above, height and tilt aside.
-  const Pose T_turn(Eigen::AngleAxisd(headingOf(T_guess), Eigen::Vector3d::UnitZ()));
+  const Eigen::Vector3d guess = flatOf(T_guess);
+  const Pose T_turn(Eigen::AngleAxisd(guess[2], Eigen::Vector3d::UnitZ()));
   Seen level = stretch;
   const Eigen::Matrix3f T_level = (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
   for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
-  const Eigen::Vector3d guess(T_guess(0, 3), T_guess(1, 3), headingOf(T_guess));
   const auto found =
       PlaneSearch(upright(then.cloud), m_scale.gridCell)
           .find(upright(level.cloud), guess, windowSince(m_keyframes[place].way), kLeastScore);
   if (!found) return std::nullopt;
-  Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], T_guess(2, 3)));
-  T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
+  Pose T_found = poseOfFlat(*found, T_guess(2, 3));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
   return edgeAt(place, then, stretch, T_found, m_scale.leastMatched);
 }
@@ -140,15 +134,13 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
 std::optional<PoseEdge> SlamEngine::edgeAt(std::size_t place, const Seen& then, const Seen& stretch,
                                            const Pose& T_place_guess, double leastMatched) const {
   const std::size_t newest = m_keyframes.size() - 1;
-  std::vector<Submap> submaps;
+  std::vector<double> cells;
   const double finest = m_scale.cells.back();
   for (double size = (m_scale.isPlanar ? m_scale.cells.front() / finest : kCoarsest) * finest;
-       size >= finest; size /= 2) {
-    submaps.emplace_back(size, m_options.useClasses, m_scale.isPlanar);
-    submaps.back().add(then.cloud, Pose::Identity());
-    submaps.back().finish();
-  }
-  const Registration r = match(submaps, stretch, T_place_guess, Matrix6::Zero());
+       size >= finest; size /= 2)
+    cells.push_back(size);
+  const Registration r =
+      match(submapsOf(then.cloud, cells), stretch, T_place_guess, Matrix6::Zero());
   if (r.coveredShare < kCovered || r.matchedShare < leastMatched) return std::nullopt;
   return PoseEdge{place, newest, r.T_submap_scan,
                   bothErrors(informationOf(kLoopMeters, kLoopAngle), r, newest), true};
@@ -247,7 +239,7 @@ bool SlamEngine::followReference() {
   constexpr double kEvery = 3;  // m
   if (m_keyframes[newest].way < m_lastReferenced + kEvery) return false;
   m_lastReferenced = m_keyframes[newest].way;
-  const auto found = findInReference(m_keyframes[newest].seen, m_poses[newest]);
+  const auto found = findInReference(seenAt(newest), m_poses[newest]);
   if (!found) return false;
   const std::size_t before = m_edges.size();
   const bool moved = confirm(m_pendingReferences, lookOf(newest, *found));

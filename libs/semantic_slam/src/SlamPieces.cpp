@@ -41,13 +41,8 @@ bool SlamEngine::holdsAcross(std::size_t first) const {
   const auto before = static_cast<std::size_t>(m_scale.submapKeyframes);
   const Seen then = pointsOf(first - std::min(first, before), place, place);
   const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
-  std::vector<Submap> submaps;
-  for (const double size : m_scale.cells) {
-    submaps.emplace_back(size, m_options.useClasses, m_scale.isPlanar);
-    submaps.back().add(then.cloud, Pose::Identity());
-    submaps.back().finish();
-  }
-  const Registration r = match(submaps, pointsOf(first, newest, newest), T_guess, Matrix6::Zero());
+  const Registration r = match(submapsOf(then.cloud, m_scale.cells),
+                               pointsOf(first, newest, newest), T_guess, Matrix6::Zero());
   return r.coveredShare >= kCovered && r.matchedShare >= kHolds &&
          (T_guess.inverse() * r.T_submap_scan).translation().norm() < kHoldsMeters;
 }
@@ -67,16 +62,16 @@ void SlamEngine::tearAt(std::size_t first) {
   for (std::size_t k = first; k < m_keyframes.size(); ++k) {
     const auto edge = std::find_if(m_edges.begin(), m_edges.end(),
                                    [k](const PoseEdge& e) { return !e.isDoubtful && e.b == k; });
+    const Seen seen = seenAt(k);
     if (k == first) {
       edge->information = kUnknown;
     } else {
       const Pose T_guess = m_local.T_local_last() * edge->T_a_b;
-      const Registration r =
-          match(m_local.submaps(), m_keyframes[k].seen, T_guess, guessed(edge->T_a_b));
+      const Registration r = match(m_local.submaps(), seen, T_guess, guessed(edge->T_a_b));
       edge->T_a_b = rigid(m_local.T_local_last().inverse() * r.T_submap_scan);
-      m_poses[k] = levelled(m_poses[k - 1] * edge->T_a_b, m_keyframes[k].seen.T_odometry_robot);
+      m_poses[k] = levelled(m_poses[k - 1] * edge->T_a_b, seen.T_odometry_robot);
     }
-    m_local.add(m_keyframes[k].seen.cloud, k == first ? Pose::Identity() : edge->T_a_b, m_scale,
+    m_local.add(seen.cloud, k == first ? Pose::Identity() : edge->T_a_b, m_scale,
                 m_options.useClasses);
   }
 }
@@ -121,7 +116,7 @@ std::optional<PoseEdge> SlamEngine::findPiece() const {
   PlanePoints all;
   for (std::size_t k = 0; k < first; ++k)
     for (const Eigen::Vector2d& p :
-         uprightPoints(moved(m_keyframes[k].seen.cloud, m_poses[k]), m_scale.isPlanar, cell))
+         uprightPoints(moved(seenAt(k).cloud, m_poses[k]), m_scale.isPlanar, cell))
       all.push_back(p);
   PlanePoints some;
   const PlanePoints searched = uprightPoints(stretch.cloud, m_scale.isPlanar, cell);
@@ -133,8 +128,7 @@ std::optional<PoseEdge> SlamEngine::findPiece() const {
   const auto found = PlaneSearch(all, cell).find(some, {middle.x(), middle.y(), 0},
                                                  {box.sizes().maxCoeff() / 2, M_PI}, kFoundScore);
   if (!found) return std::nullopt;
-  Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], 0));
-  T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
+  const Pose T_found = poseOfFlat(*found);
   const auto distance = [&](std::size_t k) {
     return (m_poses[k].translation() - T_found.translation()).head<2>().norm();
   };

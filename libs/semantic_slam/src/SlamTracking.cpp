@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "SlamEngine.h"
 
@@ -28,12 +30,7 @@ constexpr double kTrackedScore = 0.4;
 /** Without odometry, after so many scans in a row that fit nothing, what follows begins anew. */
 constexpr int kMostLost = 3;
 
-/** x, y and heading of a pose. */
-Eigen::Isometry3d planar(const Eigen::Isometry3d& T) {
-  Eigen::Isometry3d result(Eigen::Translation3d(T.translation().x(), T.translation().y(), 0));
-  result.rotate(Eigen::AngleAxisd(std::atan2(T(1, 0), T(0, 0)), Eigen::Vector3d::UnitZ()));
-  return result;
-}
+Eigen::Isometry3d planar(const Eigen::Isometry3d& T) { return poseOfFlat(flatOf(T)); }
 
 double wayOf(const Eigen::Isometry3d& T) { return T.translation().norm(); }
 double turnOf(const Eigen::Isometry3d& T) { return vectorOf(T).tail<3>().norm(); }
@@ -51,41 +48,101 @@ LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T) {
   return cloud;
 }
 
-Slam::Added SlamEngine::add(const LabeledCloud& cloud, const Pose& T_robot_sensor,
-                            const std::optional<Pose>& T_odometry_robot) {
+Eigen::Vector3d flatOf(const Eigen::Isometry3d& T) {
+  return {T(0, 3), T(1, 3), std::atan2(T(1, 0), T(0, 0))};
+}
+
+Eigen::Isometry3d poseOfFlat(const Eigen::Vector3d& flat, double z) {
+  Eigen::Isometry3d T(Eigen::Translation3d(flat[0], flat[1], z));
+  T.rotate(Eigen::AngleAxisd(flat[2], Eigen::Vector3d::UnitZ()));
+  return T;
+}
+
+Slam::Added SlamEngine::add(const SensorScan& scan, const std::optional<Pose>& T_odometry_robot,
+                            double seconds) {
+  const bool isVelocityKnown = !m_keyframes.empty() && m_first.times.empty();
+  if (scan.times.empty() || !isVelocityKnown) return addAsOf(0, scan, T_odometry_robot, seconds);
+  const double middle = std::accumulate(scan.times.begin(), scan.times.end(), 0.0) /
+                        static_cast<double>(scan.times.size());
+  std::optional<Pose> T_odometry_middle;
+  if (T_odometry_robot) T_odometry_middle = *T_odometry_robot * movedFor(middle, m_velocity);
+  Slam::Added added = addAsOf(middle, scan, T_odometry_middle, seconds + middle);
+  added.T_keyframe_robot = added.T_keyframe_robot * movedFor(-middle, added.velocity);
+  return added;
+}
+
+Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
+                                const std::optional<Pose>& T_odometry_robot, double seconds) {
   ++m_report.scans;
   if (m_keyframes.empty()) m_hasOdometry = T_odometry_robot.has_value();
-  setScale(cloud, T_robot_sensor);
+  setScale(scan.cloud, scan.T_robot_sensor);
   if (m_keyframes.empty())
     m_noise = MotionNoise(!m_hasOdometry, m_hasOdometry && !m_scale.isPlanar ? kInSpace : 1);
   const std::size_t last = m_keyframes.size() - 1;
+  const double passed = m_keyframes.empty() ? 0 : seconds - m_lastSeconds;
+  const auto velocityBy = [&](const Pose& T) {
+    return passed > 0 ? velocityOf(T, passed) : m_velocity;
+  };
+  if (!m_hasOdometry && !scan.times.empty()) m_T_step = movedFor(passed, m_velocity);
   const Pose T_step = predictedStep(T_odometry_robot), T_guess = m_T_keyframe_last * T_step;
   const Pose T_odometry = m_keyframes.empty() ? T_odometry_robot.value_or(Pose::Identity())
                                               : T_odometry_robot.value_or(m_poses[last] * T_guess);
   const bool stands = m_hasOdometry && isSmall(T_step) && isSmall(goingOn());
-  if (!m_keyframes.empty() && stands && ++m_numSmall < kMostSmall) return {last, T_guess};
-  Seen now{moved(thinned(cloud, m_scale.cube, kFarthest), T_robot_sensor), T_odometry};
-  if (!m_options.useClasses)
-    std::fill(now.cloud.classes.begin(), now.cloud.classes.end(), semantic_types::kNoClass);
-  if (m_keyframes.empty()) return beginFirst(now);
+  if (!m_keyframes.empty() && stands && ++m_numSmall < kMostSmall)
+    return {last, T_guess, false, false, velocityBy(T_step)};
+  m_lastSeconds = seconds;
+  Seen now = seenIn(scan, middle, m_velocity, T_odometry);
+  if (m_keyframes.empty()) {
+    if (!scan.times.empty()) m_first = scan;
+    return beginFirst(now);
+  }
 
-  const auto registered = track(now, T_step);
+  auto registered = track(now, T_step);
+  if (registered && !m_first.times.empty()) {  // alike skewed, they tell how fast the robot is
+    straightenFirst(velocityBy(m_T_keyframe_last.inverse() * registered->T_submap_scan));
+    now = seenIn(scan, middle, m_velocity, T_odometry);
+    registered = track(now, T_step);
+  }
   const Pose T_last_robot = registered ? registered->T_submap_scan : T_guess;
   const Pose T_moved = rigid(m_T_keyframe_last.inverse() * T_last_robot);
   m_report.way += wayOf(T_moved);
   noteStanding(T_moved);
   registered ? noteFound(T_step, T_last_robot, *registered) : noteLost(T_step);
+  m_velocity = velocityBy(m_T_step);
   m_T_keyframe_last = T_last_robot;
   m_T_odometry_last = T_odometry;
   m_stepScans = 1 + m_numSmall;
   m_numSmall = 0;
-  if (!beginsKeyframe(T_last_robot)) return {last, T_last_robot};
+  if (!beginsKeyframe(T_last_robot)) return {last, T_last_robot, false, false, m_velocity};
   m_edges.push_back(
       {last, last + 1, T_last_robot, registered ? registered->information : guessed(T_last_robot)});
   if (isTorn()) m_local.clear();
   begin(now, rigid(m_poses.back() * T_last_robot), T_last_robot);
   const bool mended = mendPieces(), followed = followReference();
-  return {last + 1, Pose::Identity(), true, closeLoops() || followed || mended};
+  return {last + 1, Pose::Identity(), true, closeLoops() || followed || mended, m_velocity};
+}
+
+auto SlamEngine::seenIn(const SensorScan& scan, double middle, const Vector6& velocity,
+                        const Pose& T_odometry) const -> Seen {
+  const bool isStraight = scan.times.empty();
+  const SensorScan straight = isStraight ? SensorScan() : deskewed(scan, velocity, middle);
+  Seen seen{moved(thinned((isStraight ? scan : straight).cloud, m_scale.cube, kFarthest),
+                  scan.T_robot_sensor),
+            T_odometry};
+  if (!m_options.useClasses)
+    std::fill(seen.cloud.classes.begin(), seen.cloud.classes.end(), semantic_types::kNoClass);
+  return seen;
+}
+
+void SlamEngine::straightenFirst(const Vector6& velocity) {
+  m_velocity = velocity;
+  const SensorScan first = std::exchange(m_first, {});
+  if (first.times.empty() || m_keyframes.size() > 1) return;
+  const Seen seen = seenIn(first, 0, velocity, m_keyframes[0].seen.T_odometry_robot);
+  m_keyframes.clear();
+  keep(seen);
+  m_local.clear();
+  m_local.add(seen.cloud, Pose::Identity(), m_scale, m_options.useClasses);
 }
 
 void SlamEngine::setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor) {
@@ -97,7 +154,8 @@ void SlamEngine::setScale(const LabeledCloud& cloud, const Pose& T_robot_sensor)
     m_scale.cells.insert(m_scale.cells.begin(), {4 * m_scale.cells[0], 2 * m_scale.cells[0]});
   m_local.clear();  // of another sensor
   if (!m_keyframes.empty())
-    m_local.add(m_keyframes.back().seen.cloud, Pose::Identity(), m_scale, m_options.useClasses);
+    m_local.add(seenAt(m_keyframes.size() - 1).cloud, Pose::Identity(), m_scale,
+                m_options.useClasses);
 }
 
 Eigen::Isometry3d SlamEngine::predictedStep(const std::optional<Pose>& T_odometry_robot) {
@@ -173,11 +231,34 @@ Slam::Added SlamEngine::beginFirst(const Seen& seen) {
 }
 
 void SlamEngine::begin(const Seen& seen, const Pose& T_map_robot, const Pose& T_last_keyframe) {
+  keep(seen);
   m_T_keyframe_last = m_T_keyframe_found = Pose::Identity();
   if (isTorn()) m_lostInRow = 0;
   m_poses.push_back(levelled(T_map_robot, seen.T_odometry_robot));
   m_local.add(seen.cloud, T_last_keyframe, m_scale, m_options.useClasses);
-  m_keyframes.push_back({seen, m_report.way});  // a copy has no room to grow
+}
+
+void SlamEngine::keep(Seen seen) {
+  const LabeledCloud& cloud = seen.cloud;
+  const std::size_t n = cloud.size();
+  std::uint64_t place = 0;
+  if (m_file) {
+    place = m_file->append(cloud.points.data(), n * sizeof(Eigen::Vector3f));
+    m_file->append(cloud.classes.data(), n);
+    seen.cloud = {};
+  }
+  m_keyframes.push_back({seen, m_report.way, place, n});  // a copy has no room to grow
+}
+
+auto SlamEngine::seenAt(std::size_t keyframe) const -> Seen {
+  const auto& [kept, way, place, n] = m_keyframes[keyframe];
+  Seen seen = kept;
+  if (!m_file) return seen;
+  seen.cloud.points.resize(n);
+  seen.cloud.classes.resize(n);
+  m_file->read(place, seen.cloud.points.data(), n * sizeof(Eigen::Vector3f));
+  m_file->read(place + n * sizeof(Eigen::Vector3f), seen.cloud.classes.data(), n);
+  return seen;
 }
 
 std::optional<Registration> SlamEngine::track(const Seen& seen, const Pose& T_step) {
@@ -226,10 +307,8 @@ PlaneSearch::Window SlamEngine::windowAround(const Pose& T_step, const Matrix6& 
 bool SlamEngine::isCovered(const Registration& r, const Seen& seen) const {
   if (r.coveredShare >= kTracked) return true;
   // Few points may leave cubes empty that they are in, or alone in.
-  Submap own(m_scale.cells.back(), m_options.useClasses, m_scale.isPlanar);
-  own.add(seen.cloud, Pose::Identity());
-  own.finish();
-  const Registration itself = match({own}, seen, Pose::Identity(), Matrix6::Zero());
+  const Registration itself =
+      match(submapsOf(seen.cloud, {m_scale.cells.back()}), seen, Pose::Identity(), Matrix6::Zero());
   return r.coveredShare >= kTracked * itself.coveredShare;
 }
 
@@ -239,21 +318,15 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
   const std::size_t first = m_keyframes.size() - m_local.poses().size();
   for (std::size_t k = first; k < m_keyframes.size(); ++k) {
     const Pose& T = m_local.poses()[k - first];
-    for (const Eigen::Vector2d& p :
-         uprightPoints(moved(m_keyframes[k].seen.cloud, T), m_scale.isPlanar, m_scale.gridCell))
-      points.push_back(p);
+    for (const Eigen::Vector2d& p : upright(moved(seenAt(k).cloud, T))) points.push_back(p);
   }
-  const Eigen::Isometry3d flat = planar(T_local_guess);
-  const Eigen::Vector3d guess(flat(0, 3), flat(1, 3), std::atan2(flat(1, 0), flat(0, 0)));
+  const Pose T_level = planar(T_local_guess).inverse() * T_local_guess;
   const auto found = PlaneSearch(points, m_scale.gridCell)
-                         .find(uprightPoints(moved(seen.cloud, flat.inverse() * T_local_guess),
-                                             m_scale.isPlanar, m_scale.gridCell),
-                               guess, window, kTrackedScore);
+                         .find(upright(moved(seen.cloud, T_level)), flatOf(planar(T_local_guess)),
+                               window, kTrackedScore);
   if (!found) return std::nullopt;
-  Pose T_found(Eigen::Translation3d((*found)[0], (*found)[1], 0));
-  T_found.rotate(Eigen::AngleAxisd((*found)[2], Eigen::Vector3d::UnitZ()));
   const Registration r =
-      match(m_local.submaps(), seen, T_found * (flat.inverse() * T_local_guess), Matrix6::Zero());
+      match(m_local.submaps(), seen, poseOfFlat(*found) * T_level, Matrix6::Zero());
   if (!isCovered(r, seen) || r.matchedShare < kFitsWell) return std::nullopt;
   return r;
 }

@@ -57,11 +57,30 @@ Eigen::Vector3d LidarOptions::beam(int ring, int column) const {
 
 LabeledCloud scanLidar(const World& world, const Eigen::Isometry3d& T_world_lidar,
                        const LidarOptions& options, FrameSeed seed) {
+  return scanLidar(
+      world, [&](double) { return T_world_lidar; }, options, seed);
+}
+
+std::vector<float> sharesOfTurn(const LabeledCloud& scan) {
+  std::vector<float> shares;
+  for (const Eigen::Vector3f& p : scan.points) {
+    const double share = std::atan2(p.y(), p.x()) / (2 * M_PI);
+    shares.push_back(static_cast<float>(share < 0 ? share + 1 : share));
+  }
+  return shares;
+}
+
+LabeledCloud scanLidar(const World& world, const LidarPath& path, const LidarOptions& options,
+                       FrameSeed seed) {
   options.validate();
+  std::vector<Eigen::Isometry3d> poses;  // of columns
+  for (int column = 0; column < options.columns; ++column)
+    poses.push_back(path(static_cast<double>(column) / options.columns));
   LabeledCloud cloud;
   for (int ring = 0; ring < options.rings; ++ring)
     for (int column = 0; column < options.columns; ++column) {
       const Eigen::Vector3d beam = options.beam(ring, column);
+      const Eigen::Isometry3d& T_world_lidar = poses[static_cast<std::size_t>(column)];
       const Eigen::Vector3d direction = T_world_lidar.linear() * beam;
       const double farthest = options.maxRange + 5 * options.noise.range;
       auto hit = world.castRay(T_world_lidar.translation(), direction, farthest);

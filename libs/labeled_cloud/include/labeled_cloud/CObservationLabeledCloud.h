@@ -20,13 +20,17 @@ class CObservationLabeledCloud : public mrpt::obs::CObservation {
  public:
   /** The points in meters, in the sensor's frame. */
   semantic_types::LabeledCloud cloud;
+  /** When each point was taken, seconds after `timestamp`; empty: all then, or nobody knows. 4 more
+   * bytes per point in rawlogs. */
+  std::vector<float> times;
   /** T_robot_sensor. */
   mrpt::poses::CPose3D sensorPose;
   /** Name of class i at [i - 1], for people and to tell class tables apart. May be empty. */
   std::vector<std::string> classNames;
 
-  /** \throw std::invalid_argument naming what does not fit: numbers of points, classes and
-   * probabilities, class ids above 254 or without a name although there are names. */
+  /** \throw std::invalid_argument naming what does not fit: numbers of points, classes,
+   * probabilities and times, times that are not finite, class ids above 254 or without a name
+   * although there are names. */
   void validate() const;
 
 #if MSO_MRPT_AT_LEAST(3, 0, 0)

@@ -44,6 +44,8 @@ struct LabeledPicture {
 struct LabeledScan {
   /** Points in the sensor's frame, all finite. */
   semantic_types::LabeledCloud cloud;
+  /** When each point was taken, seconds after `timestamp`; empty: nobody knows. */
+  std::vector<float> times;
   mrpt::poses::CPose3D T_robot_sensor;
   mrpt::Clock::time_point timestamp;
   std::string sensorLabel;
@@ -65,6 +67,8 @@ struct NamedCloud {
   /** Colors of points without classes, one for each or none: they stand for classes if each is a
    * color of the user's table, or black, which is no class. */
   std::vector<semantic_types::Color> colors;
+  /** As LabeledScan::times. */
+  std::vector<float> times = {};
 };
 
 /** Reads the points of some classes of observations. ScanConverter knows labeled clouds, point

@@ -127,12 +127,13 @@ class Navigator {
   semantic_slam::Mapper& waitedFor() const;
   void insert(const std::vector<semantic_slam::SensorScan>& seen, double seconds);
   std::vector<semantic_slam::SensorScan> withoutPassing(
-      const std::vector<semantic_slam::SensorScan>& seen) const;
+      std::vector<semantic_slam::SensorScan> seen) const;
   semantic_planning::StageTimes fill(const std::vector<semantic_slam::SensorScan>& seen,
                                      const semantic_slam::Mapper::Place& place,
                                      const std::vector<Eigen::Vector2d>& left, double seconds);
   void carve(const semantic_slam::Mapper::Place& at, const std::vector<Eigen::Vector2d>& left);
-  semantic_slam::Mapper::Place locate(const std::vector<semantic_slam::SensorScan>& seen);
+  semantic_slam::Mapper::Place locate(const std::vector<semantic_slam::SensorScan>& seen,
+                                      double seconds);
   void focus();
   void correctState();
   bool mayGuide() const;

@@ -4,21 +4,12 @@
 #include <semantic_slam/Slam.h>
 
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace semantic_slam {
-
-/** What one sensor saw, once. */
-struct SensorScan {
-  LabeledCloud cloud;  ///< sensor frame, meters
-  Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
-  /** Points this far from the sensor or farther stand for beams without a return: they carve, and
-   * are no evidence of where the robot is. m */
-  double emptyFrom = std::numeric_limits<double>::infinity();
-};
 
 /** What a Mapper does with scans. */
 struct MapperOptions {
@@ -30,7 +21,8 @@ struct MapperOptions {
   /** With `localize`: of the scans that begin no keyframe each n-th is inserted; 1: all. With more,
    * a robot that waits does not become ever surer of what may go away. */
   int insertEvery = 1;
-  /** With `localize`: a folder for the scans that a closed loop may move; empty: in memory. */
+  /** With `localize`: a folder for the scans that a closed loop may move, and for what loops are
+   * searched in; empty: in memory. */
   std::filesystem::path scans;
 };
 
@@ -54,7 +46,8 @@ class Mapper {
   /** Where a scan was taken. */
   struct Place {
     Eigen::Isometry3d T_map_robot;
-    std::optional<Slam::Added> added;  ///< to the keyframes, if it localizes
+    std::optional<Slam::Added> added;    ///< to the keyframes, if it localizes
+    Vector6 velocity = Vector6::Zero();  ///< (m/s; rad/s), robot's frame: what to deskew scans by
   };
   /** Scans of sensors, seen at a time, that are in the map now. */
   struct Inserted {
@@ -65,27 +58,31 @@ class Mapper {
   /** locate() and insert(), see there. */
   Inserted insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
                   const std::optional<Eigen::Isometry3d>& T_odometry_robot, double seconds) {
-    const std::vector<SensorScan> seen = {{cloud, T_robot_sensor}};
-    return insert(seen, locate(seen, T_odometry_robot), seconds);
+    return insert({cloud, T_robot_sensor}, T_odometry_robot, seconds);
+  }
+  Inserted insert(const SensorScan& scan, const std::optional<Eigen::Isometry3d>& T_odometry_robot,
+                  double seconds) {
+    const std::vector<SensorScan> seen = {scan};
+    return insert(seen, locate(seen, T_odometry_robot, seconds), seconds);
   }
   /** Finds where scans were taken, and closes loops. T_map_odometry() knows at once, the map with
    * insert(), which has to follow, before the next locate().
    * \param T_odometry_robot of the robot's frame when they were taken; with SlamOptions::level its
    * height and tilt are right. None: with `localize` scans alone tell where the robot is, and
    * T_map_odometry() stays
+   * \param seconds when they were taken, of any clock: how fast the robot was follows from it
    * \throw std::invalid_argument there is none, and no `localize` */
   Place locate(const std::vector<SensorScan>& seen,
-               const std::optional<Eigen::Isometry3d>& T_odometry_robot);
+               const std::optional<Eigen::Isometry3d>& T_odometry_robot, double seconds = 0);
   /** The robot is elsewhere than it was found to be, as a person says, or before the first scan
    * somewhere else than where odometry begins. The next scan is registered to the map from there.
    * What was inserted until now moves no more: it is the map in whose frame poses are.
    * \throw std::logic_error without `localize` */
   void relocalize(const Eigen::Isometry3d& T_map_odometry);
-  /** Inserts what was seen at once, or leaves it out; moves keyframes, if a loop was closed. The
-   * map ages by the time since the last scan. Another thread may do it, as long as none reads the
-   * map.
-   * \param seconds when they were taken, of any clock \throw std::exception as
-   * SemanticOcTree::insert() */
+  /** Inserts what was seen at once, deskewed where points have times, or leaves it out; moves
+   * keyframes, if a loop was closed. The map ages by the time since the last scan. Another thread
+   * may do it, as long as none reads the map. \param seconds when they were taken, of any clock
+   * \throw std::exception as SemanticOcTree::insert() */
   Inserted insert(const std::vector<SensorScan>& seen, const Place& place, double seconds);
   /** Adds what the robot stands on, and its sensors do not see.
    * \param points in the robot's frame; nothing is carved \param place of the last insert() */
@@ -109,8 +106,8 @@ class Mapper {
 
  private:
   Slam::Added addToSlam(const std::vector<SensorScan>& seen,
-                        const std::optional<Eigen::Isometry3d>& T_odometry_robot);
-  LabeledCloud evidenceOf(const std::vector<SensorScan>& seen) const;
+                        const std::optional<Eigen::Isometry3d>& T_odometry_robot, double seconds);
+  SensorScan evidenceOf(const std::vector<SensorScan>& seen) const;
   bool isLeftOut(const Place& place);
   semantic_octree::InsertionReport insertAt(const Place& place, const LabeledCloud& cloud,
                                             const Eigen::Isometry3d& T_robot_cloud,
@@ -128,6 +125,8 @@ class Mapper {
   Eigen::Isometry3d m_T_map_odometry = Eigen::Isometry3d::Identity();
   /** What Slam takes for odometry's frame. */
   Eigen::Isometry3d m_T_start_odometry = Eigen::Isometry3d::Identity();
+  /** Without `localize`: where odometry had the last scan, and when. */
+  std::optional<std::pair<Eigen::Isometry3d, double>> m_last;
   int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_octree::Calibrator m_calibrator;
   std::size_t m_numScans = 0, m_calibrateAt = 4;

@@ -29,6 +29,12 @@ Eigen::Isometry3d poseOf(const Vector6& v);
 /** The inverse of poseOf(). */
 Vector6 vectorOf(const Eigen::Isometry3d& T);
 
+/** Where a robot is after a time at constant velocity, seen from where it was. \param velocity
+ * (m/s; rad/s), frame of the robot */
+Eigen::Isometry3d movedFor(double seconds, const Vector6& velocity);
+/** The inverse of movedFor(). \param seconds above 0 */
+Vector6 velocityOf(const Eigen::Isometry3d& T_before_after, double seconds);
+
 /** The nearest pose whose rotation is one to the last bits: products of products drift. */
 Eigen::Isometry3d rigid(const Eigen::Isometry3d& T);
 

@@ -33,7 +33,6 @@ class Reference {
   /** Where the lowest begins and the highest ends, in voxels. */
   using Layers = std::pair<double, double>;
   Layers layersOf(const LabeledCloud& scan, const Eigen::Isometry3d& T_map_scan) const;
-  std::vector<Submap> submapsOf(const LabeledCloud& cloud, bool isPlanar) const;
 
   double m_voxelSize = 0;  // m
   std::vector<double> m_cellSizes;

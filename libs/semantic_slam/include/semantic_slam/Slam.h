@@ -4,6 +4,8 @@
 #include <semantic_slam/SlamOptions.h>
 #include <semantic_types/LabeledCloud.h>
 
+#include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +14,23 @@
 namespace semantic_slam {
 
 using semantic_types::LabeledCloud;
+
+/** What one sensor saw, once. */
+struct SensorScan {
+  LabeledCloud cloud;  ///< sensor frame, meters
+  Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
+  /** Points this far from the sensor or farther stand for beams without a return: they carve, and
+   * are no evidence of where the robot is. m */
+  double emptyFrom = std::numeric_limits<double>::infinity();
+  /** When each point was taken, seconds after the time of the scan; empty: all at that time. */
+  std::vector<float> times = {};
+};
+
+/** The scan as it would be if all points had been taken at one time, by a robot that goes on at
+ * constant velocity. Points of that time keep their bits, and all if the velocity is zero.
+ * \param velocity (m/s; rad/s), frame of the robot \param at seconds after the time of the scan
+ * \throw std::invalid_argument there are times, but not one for each point */
+SensorScan deskewed(SensorScan scan, const Vector6& velocity, double at = 0);
 
 /** How a trajectory came about. */
 struct SlamReport {
@@ -42,8 +61,10 @@ struct SlamReport {
  * Keyframes are numbered as by semantic_octree::KeyframeMap, which a map follows it with. */
 class Slam {
  public:
-  /** \throw std::invalid_argument bad options. */
-  explicit Slam(const SlamOptions& options);
+  /** \param folder for what loops are searched in, in a file that goes when this goes; empty: in
+   * memory \throw std::invalid_argument bad options \throw std::runtime_error naming the folder:
+   * it cannot be written to, now or later. */
+  explicit Slam(const SlamOptions& options, const std::filesystem::path& folder = {});
   ~Slam();
   Slam(Slam&&) noexcept;
 
@@ -59,11 +80,17 @@ class Slam {
     Eigen::Isometry3d T_keyframe_robot;
     bool isNew = false;       ///< the keyframe begins with it
     bool posesMoved = false;  ///< those of earlier keyframes: by a loop, or the reference
+    Vector6 velocity = Vector6::Zero();  ///< (m/s; rad/s), robot's frame: what to deskew it by
   };
-  /** \param cloud sensor frame \param T_odometry_robot where odometry says that it was taken; none:
-   * the robot goes on as before (constant velocity) */
+  /** A scan whose points have times is deskewed, by how the robot moved since the scan before.
+   * \param T_odometry_robot where odometry says that it was taken; none: the robot goes on as
+   * before (constant velocity) \param seconds when it was taken, of any clock */
+  Added add(const SensorScan& scan, const std::optional<Eigen::Isometry3d>& T_odometry_robot,
+            double seconds = 0);
   Added add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_sensor,
-            const std::optional<Eigen::Isometry3d>& T_odometry_robot);
+            const std::optional<Eigen::Isometry3d>& T_odometry_robot) {
+    return add({cloud, T_robot_sensor}, T_odometry_robot);
+  }
   /** Brings all loops into the poses. \return whether poses moved */
   bool finish();
 

@@ -6,6 +6,7 @@
 #include <synthetic_world/World.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace synthetic_world {
@@ -105,10 +106,19 @@ struct LidarOptions {
   void validate() const;
 };
 
-/** One turn, taken from a single pose: the returns, ring after ring.
+/** Where a LiDAR is when a share of its turn is done, from 0 on. */
+using LidarPath = std::function<Eigen::Isometry3d(double share)>;
+
+/** One turn, all beams of a column at once: the returns, ring after ring, in the frame of the
+ * sensor when each was taken.
  * \throw std::invalid_argument the options are not valid. */
+LabeledCloud scanLidar(const World& world, const LidarPath& T_world_lidar,
+                       const LidarOptions& options, FrameSeed seed = {});
+/** One turn, taken from a single pose. */
 LabeledCloud scanLidar(const World& world, const Eigen::Isometry3d& T_world_lidar,
                        const LidarOptions& options, FrameSeed seed = {});
+/** The share of the turn at which each point of such a scan was taken. */
+std::vector<float> sharesOfTurn(const LabeledCloud& scan);
 
 /** Color of a surface in the afternoon sun: texture, light, cast shadow, haze. */
 Color surfaceColor(const World& world, const Hit& hit);
