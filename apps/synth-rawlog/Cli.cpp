@@ -70,12 +70,18 @@ void addOptions(CLI::App& app, Cli& cli) {
   app.add_option("--classes", cli.classes,
                  "Class table (YAML) for the labels; its raw ids name the world's classes. "
                  "Without: the world's own table");
+  app.add_option("--truth-query", cli.truthQuery,
+                 "Print what is at each point of this file (lines: x y z)")
+      ->check(CLI::ExistingFile);
+  addNumber(app, "--tolerance", cli.tolerance, strict_files::atLeast(0),
+            "What is this near to a surface is on it, m");
   ::addOptions(app, driveOptions(cli), "World and drive");
   ::addOptions(app, sensorOptions(cli), "Sensors");
 }
 
 void complete(Cli& cli) {
-  if (cli.output.empty() && cli.picture.empty()) throw CLI::RequiredError("--output or --picture");
+  if (cli.output.empty() && cli.truthQuery.empty() && cli.picture.empty())
+    throw CLI::RequiredError("--output, --picture or --truth-query");
   if (cli.labelNoiseKind != label_noise::LabelNoise::Kind::Points)
     cli.labelNoise = std::exchange(cli.noise.label, 0);
   cli.camera.noise = cli.lidar.noise = cli.noise;

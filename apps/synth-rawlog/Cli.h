@@ -11,7 +11,7 @@ namespace synth_rawlog {
 
 /** The command line. */
 struct Cli {
-  std::filesystem::path output;  // the rawlog; empty if only a picture is wanted
+  std::filesystem::path output;  // the rawlog; empty if only the truth or a picture is wanted
   std::string scene = "village";
   std::uint64_t seed = 1;
   double hills = 1;  // factor
@@ -34,7 +34,8 @@ struct Cli {
   label_noise::LabelNoise::Kind labelNoiseKind = label_noise::LabelNoise::Kind::Points;
 
   std::filesystem::path classes;  // table whose raw ids are the world's classes; empty: the world's
-  std::filesystem::path picture;
+  std::filesystem::path truthQuery, picture;
+  double tolerance = 0.05;  // m
 
   Outputs outputs;
 

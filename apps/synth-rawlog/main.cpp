@@ -14,6 +14,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <iostream>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -232,6 +234,23 @@ void writePicture(const Cli& cli, const WorldClasses& classes,
   map_pictures::savePicture(pictureOf(both), cli.picture);
 }
 
+/** Prints for each line "x y z" of the file: x y z, state, class id, class name.
+ * \throw std::runtime_error naming the line that is not three numbers. */
+void answerTruth(const Cli& cli, const WorldClasses& classes, const synthetic_world::World& world) {
+  static const std::map<synthetic_world::PointTruth::State, const char*> kNames = {
+      {synthetic_world::PointTruth::State::Free, "free"},
+      {synthetic_world::PointTruth::State::Surface, "surface"},
+      {synthetic_world::PointTruth::State::Inside, "inside"},
+      {synthetic_world::PointTruth::State::Underground, "underground"}};
+  for (const strict_files::TextLine& line : strict_files::readLines(cli.truthQuery)) {
+    const std::vector<double> p = numbersOf(line, 3);
+    const synthetic_world::PointTruth truth = world.at({p[0], p[1], p[2]}, cli.tolerance);
+    const ClassId id = classes.of(truth.id);
+    std::cout << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << kNames.at(truth.state) << ' ' << +id
+              << ' ' << (id == synthetic_world::kNoClass ? "-" : classes.table().name(id)) << '\n';
+  }
+}
+
 void checkOutputs(const Cli& cli) {
   std::vector<std::filesystem::path> files = {cli.picture};
   if (!cli.output.empty())
@@ -246,11 +265,11 @@ int run(const Cli& cli) {
   synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
   if (!cli.output.empty()) writeRawlog(cli, classes, scene);
   if (!cli.picture.empty()) writePicture(cli, classes, scene.world);
+  if (!cli.truthQuery.empty()) answerTruth(cli, classes, scene.world);
   return 0;
 }
 
 }  // namespace
-
 }  // namespace synth_rawlog
 
 int main(int argc, char** argv) {
