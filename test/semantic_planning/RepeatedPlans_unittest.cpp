@@ -145,3 +145,78 @@ TEST_F(RepeatedPlansTest, theSamePosesComeAgainUnlessTheyBelongToTheTask) {
       EXPECT_LT(shared(before, now), 10u);
   }
 }
+
+namespace {
+
+class SlicedPlansTest : public PlannerTest {
+ protected:
+  SlicedPlansTest() {
+    options.shorten = true;
+    paintCorner();
+  }
+  /** \param slices their number is added */
+  static PlanResult finished(SemanticPlanner& p, int& slices) {
+    for (;; ++slices) {
+      std::size_t work = kSlice;
+      if (auto plan = p.goOn(work)) return *plan;
+      EXPECT_EQ(work, 0u) << "there was nothing left to do";
+    }
+  }
+  static void goOnOnce(SemanticPlanner& p) {
+    std::size_t work = kSlice;
+    ASSERT_FALSE(p.goOn(work));
+  }
+
+  static constexpr std::size_t kSlice = 1000;
+};
+
+}  // namespace
+
+TEST_F(SlicedPlansTest, areThoseInOneGo) {
+  SemanticPlanner whole = planner(), p = planner();
+  int slices = 0;
+  p.begin(start, goal);
+  EXPECT_EQ(numbersOf(finished(p, slices)), numbersOf(whole.plan(start, goal)));
+  EXPECT_GT(slices, 3);
+  world.box(-12, -8, 0, 1, 0, 1, PaintedWorld::Wall).map();
+  whole.update();
+  p.update();
+  p.begin(start, {});
+  EXPECT_EQ(numbersOf(finished(p, slices)), numbersOf(whole.replan(start)));
+  p.begin({-10, 30, 0}, goal);
+  EXPECT_EQ(finished(p, slices).status, PlanStatus::StartOffGround);
+}
+
+TEST_F(SlicedPlansTest, wayThatIsBlockedMeanwhileIsLookedForAnew) {
+  SemanticPlanner p = planner();
+  p.begin(start, goal);
+  goOnOnce(p);
+  world.box(-14, -6, 0, 1, 0, 1, PaintedWorld::Wall).map();
+  p.update();
+  int slices = 0;
+  expectDrivable(finished(p, slices));
+}
+
+TEST_F(SlicedPlansTest, canBeGivenUp) {
+  const PlanResult whole = plan();
+  SemanticPlanner p = planner();
+  p.begin(goal, start);
+  goOnOnce(p);
+  EXPECT_EQ(numbersOf(p.plan(start, goal)), numbersOf(whole));
+  std::size_t work = kSlice;
+  EXPECT_THROW(p.goOn(work), std::logic_error);
+  p.begin(start, TPose2D{goal});
+  p.forget();
+  EXPECT_THROW(p.begin(start, {}), std::logic_error);
+  p.begin(start, goal);
+  goOnOnce(p);  // the planner goes before the search ends
+}
+
+TEST_F(SlicedPlansTest, throwWhatTheSearchThrows) {
+  options.cancelled = []() -> bool { throw std::runtime_error("out of order"); };
+  SemanticPlanner p = planner();
+  p.begin(start, goal);
+  std::size_t work = kSlice;
+  EXPECT_THROW(p.goOn(work), std::runtime_error);
+  EXPECT_THROW(p.goOn(work), std::logic_error);
+}

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "Recovery.h"
@@ -25,6 +26,9 @@ constexpr double kRestMargin = 0.1;      // m more than coming to rest takes
 constexpr double kShortestShunt = 0.15;  // m; shorter last stretches are not worth a change of gear
 constexpr double kBlind = 2;             // m; sensors may not see the ground nearer than this
 constexpr double kNearestWithin = 5;     // m around a goal that does not fit
+// Searches do so much of their work in a call, as SemanticPlanner::goOn() counts it. A vehicle that
+// leaves a place that it is moving from cannot wait.
+constexpr std::size_t kWork = 60000, kAllWork = std::numeric_limits<std::size_t>::max();
 
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
@@ -69,8 +73,18 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
   const bool gaveUpBefore = gaveUp();
   m_explorer.moveTo(state.pose, z);
   m_misfit = misfit(now);
-  Transition next = transition(m_state, look(now), m_options);
-  while (isQuestion(next.action)) next = transition(next.state, answer(next.action, now));
+  m_work = kWork;
+  if (m_open && isPast(m_open->from, now)) m_open.reset();
+  Transition next =
+      m_open ? Transition{m_state, m_question} : transition(m_state, look(now), m_options);
+  while (isQuestion(next.action)) {
+    const std::optional<Answer> answer = this->answer(next.action, now);
+    m_state = next.state;
+    m_question = next.action;
+    if (!answer) return;
+    m_open.reset();
+    next = transition(m_state, *answer);
+  }
   m_state = next.state;
   apply(next.action, now, drive);
   if (gaveUp() && !gaveUpBefore && explored() > 0)
@@ -125,12 +139,26 @@ Look DriveGuide::look(const Situation& now) const {
 
 DriveGuide::Departure DriveGuide::departureOf(const Situation& now, From from) const {
   const PathTracker& tracker = now.drive.tracker();
-  if (from == From::Here || tracker.finished()) return {now.state.pose, now.z, {}};
+  if (from == From::Here || tracker.finished()) return {now.state.pose, now.z, 0, false};
   const DrivePath& path = tracker.path();
   const double here = tracker.progress();
   const double ahead = std::max(kLeadDistance, std::abs(now.state.speed) * kLeadTime);
   const double there = std::min(path.stretchEnd(here), here + ahead);
-  return {poseOf(path.at(there)), path.at(there).z, path.part(here, there)};
+  return {poseOf(path.at(there)), path.at(there).z, there, true};
+}
+
+/** Whether the vehicle cannot leave from there any more. */
+bool DriveGuide::isPast(const Departure& from, const Situation& now) const {
+  constexpr double kMoved = 0.05;  // m; somebody made it step aside
+  const PathTracker& tracker = now.drive.tracker();
+  if (!from.isAhead) return distance(from.pose, now.state.pose) > kMoved;
+  return tracker.finished() || tracker.progress() > from.along;
+}
+
+/** From the vehicle to where it leaves the present path. */
+DrivePath DriveGuide::until(const Departure& from, const Situation& now) const {
+  const PathTracker& tracker = now.drive.tracker();
+  return from.isAhead ? tracker.path().part(tracker.progress(), from.along) : DrivePath();
 }
 
 /** The present path as far as the vehicle needs to come to rest: another one begins with a vehicle
@@ -152,16 +180,15 @@ void DriveGuide::apply(const Action& action, const Situation& now, DriveControll
   m_found.reset();
 }
 
-Answer DriveGuide::answer(const Action& question, const Situation& now) {
+std::optional<Answer> DriveGuide::answer(const Action& question, const Situation& now) {
   Answer answer{question, now.seconds};
   if (const auto* goal = std::get_if<SeekGoal>(&question)) {
-    const Departure from = departureOf(now, goal->from);
-    m_found = toGoal(from);
-    if (goal->from == From::Ahead && goal->replaces) answer.better = improves(from, now);
+    if (!toGoal(goal->from, now)) return {};
+    if (goal->from == From::Ahead && goal->replaces) answer.better = improves(m_open->from, now);
     answer.empty = m_found && m_found->empty();
   } else if (const auto* frontier = std::get_if<SeekFrontier>(&question)) {
-    const Departure from = departureOf(now, frontier->from);
-    m_found = toFrontier(from, frontier->last, answer.enclosed);
+    if (!toFrontier(*frontier, now)) return {};
+    answer.enclosed = m_open->enclosed;
     answer.empty = m_found && m_found->empty();
     answer.shunts = m_found && !m_found->empty() && m_found->stretchEnd(0) < m_found->length();
     answer.early = isEarly(now);
@@ -178,10 +205,11 @@ Answer DriveGuide::answer(const Action& question, const Situation& now) {
 }
 
 /** A path begins where it leaves the present one. */
-DrivePath DriveGuide::joined(const Departure& from, DrivePath path) const {
+DrivePath DriveGuide::joined(const Departure& from, const Situation& now, DrivePath path) const {
   if (path.empty()) return path;
-  if (!from.before.empty()) path = from.before.part(0, from.before.length(), path);
-  return m_turns.find(path, from.before.length(), PathJudgment::kSameLength).value_or(path);
+  const DrivePath before = until(from, now);
+  if (!before.empty()) path = before.part(0, before.length(), path);
+  return m_turns.find(path, before.length(), PathJudgment::kSameLength).value_or(path);
 }
 
 /** If what was found is no better than the present path, it is the rest of that with a turn ahead
@@ -190,7 +218,7 @@ bool DriveGuide::improves(const Departure& from, const Situation& now) {
   if (isBetter(now)) return true;
   const PathTracker& tracker = now.drive.tracker();
   m_found = m_turns.find(tracker.path().part(tracker.progress(), tracker.path().length()),
-                         from.before.length(), PathJudgment::kSameLength);
+                         until(from, now).length(), PathJudgment::kSameLength);
   return m_found.has_value();
 }
 
@@ -209,32 +237,60 @@ bool DriveGuide::isBetter(const Situation& now) const {
       .isClearlyBetterThan(m_check.judge(tracker.path(), tracker.progress()));
 }
 
-std::optional<DrivePath> DriveGuide::toGoal(const Departure& from) {
-  PlanResult plan =
-      m_planned ? m_planner.replan(from.pose, from.z) : m_planner.plan(from.pose, m_aim, from.z);
-  m_planned = m_planner.hasPlanned();
-  if (!plan.found()) {
-    m_reason = plan.reason;
-    return {};
+/** \return whether it is known if there is a path */
+bool DriveGuide::toGoal(From from, const Situation& now) {
+  if (!m_open) {
+    m_open = Open{departureOf(now, from)};
+    m_planner.begin(m_open->from.pose, m_planned ? std::nullopt : std::optional(m_aim),
+                    m_open->from.z);
+    m_planned = m_planner.hasPlanned();
   }
-  DrivePath path(plan.path);
-  m_plan = std::move(plan);
+  if (!mayWait(now)) m_work = kAllWork;
+  std::optional<PlanResult> plan = m_planner.goOn(m_work);
+  if (!plan) return false;
+  m_found.reset();
+  if (!plan->found()) {
+    m_reason = plan->reason;
+    return true;
+  }
+  DrivePath path(plan->path);
+  m_plan = std::move(*plan);
   const double last = path.stretchBegin(path.length());
   const bool isWorthIt = last <= 0 || path.length() - last >= kShortestShunt;
-  return joined(from, isWorthIt ? path : path.part(0, last));
+  m_found = joined(m_open->from, now, isWorthIt ? path : path.part(0, last));
+  return true;
 }
 
-std::optional<DrivePath> DriveGuide::toFrontier(const Departure& from, bool last, bool& enclosed) {
-  const Exploration places = m_explorer.places(from.pose, from.z, m_aim);
-  enclosed = places.enclosed;
-  if (enclosed) m_reason = reasonOf(places);
-  m_planned = m_planned && places.frontiers.empty();
-  auto way = m_explorer.choose(
-      places, from.pose, from.z, [&](DrivePath path) { return joined(from, std::move(path)); },
-      last);
-  if (!way) return {};
+/** \return whether it is known if there is a path */
+bool DriveGuide::toFrontier(const SeekFrontier& question, const Situation& now) {
+  if (!m_open) {
+    m_open = Open{departureOf(now, question.from)};
+    explore();
+  }
+  const auto joinedTo = [&](DrivePath path) { return joined(m_open->from, now, std::move(path)); };
+  if (!mayWait(now)) m_work = kAllWork;
+  if (!m_explorer.goOn(joinedTo, m_work)) return false;
+  auto way = m_explorer.chosen(question.last);
+  m_found.reset();
+  if (!way) return true;
   m_plan = std::move(way->plan);
-  return std::move(way->path);
+  m_found = std::move(way->path);
+  return true;
+}
+
+void DriveGuide::explore() {
+  const Departure& from = m_open->from;
+  Exploration places = m_explorer.places(from.pose, from.z, m_aim);
+  m_open->enclosed = places.enclosed;
+  if (places.enclosed) m_reason = reasonOf(places);
+  m_planned = m_planned && places.frontiers.empty();
+  m_work -= std::min(m_work, places.work);
+  m_explorer.beginToChoose(std::move(places.frontiers), from.pose, from.z);
+}
+
+/** Where it stands, or on a path that it may follow meanwhile. */
+bool DriveGuide::mayWait(const Situation& now) const {
+  return m_open->from.isAhead || std::abs(now.state.speed) < DriveOptions::kAtRest;
 }
 
 std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) {

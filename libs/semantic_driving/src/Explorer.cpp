@@ -175,35 +175,51 @@ Exploration Explorer::places(const TPose2D& from, double z, const TPose2D& goal)
   return found;
 }
 
-std::optional<Explorer::Way> Explorer::choose(const Exploration& places, const TPose2D& from,
-                                              double z,
-                                              const std::function<DrivePath(DrivePath)>& joined,
-                                              bool last) {
-  constexpr double kShortestWay = 0.5;  // m; nearer frontiers are seen from here
-  const semantic_planning::MotionCost price(m_planner.options().vehicle);
-  Poses useless;  // if it is not seen from there, it is not seen
-  std::optional<Frontier> chosen;
-  std::optional<Way> way;
-  for (Frontier f : places.frontiers) {
-    if (chosen && f.cost >= chosen->cost) break;
-    PlanResult plan = m_planner.plan(from, f.pose, z, f.z);
-    if (!plan.found() || plan.length < kShortestWay) {
-      useless.push_back(f.pose);
-      continue;
-    }
-    DrivePath path = joined(DrivePath(plan.path));
-    f.cost += price.of(path.points()) - path.length();
-    if (chosen && f.cost >= chosen->cost) continue;
-    chosen = f;
-    way = Way{std::move(plan), std::move(path)};
+void Explorer::beginToChoose(std::vector<Frontier> places, const TPose2D& from, double z) {
+  m_choice = {};
+  m_choice.places = std::move(places);
+  m_choice.from = from;
+  m_choice.z = z;
+}
+
+bool Explorer::goOn(const std::function<DrivePath(DrivePath)>& joined, std::size_t& work) {
+  Choice& c = m_choice;
+  for (; c.next < c.places.size(); ++c.next) {
+    const Frontier& f = c.places[c.next];
+    if (c.best && f.cost >= c.best->cost) break;
+    if (!std::exchange(c.isPlanning, true)) m_planner.begin(c.from, f.pose, c.z, f.z);
+    std::optional<PlanResult> plan = m_planner.goOn(work);
+    if (!plan) return false;
+    c.isPlanning = false;
+    consider(f, std::move(*plan), joined);
   }
-  if (chosen) useless.push_back(chosen->pose);
+  return true;
+}
+
+void Explorer::consider(Frontier f, PlanResult plan,
+                        const std::function<DrivePath(DrivePath)>& joined) {
+  constexpr double kShortestWay = 0.5;  // m; nearer frontiers are seen from here
+  if (!plan.found() || plan.length < kShortestWay) {
+    m_choice.useless.push_back(f.pose);
+    return;
+  }
+  DrivePath path = joined(DrivePath(plan.path));
+  f.cost +=
+      semantic_planning::MotionCost(m_planner.options().vehicle).of(path.points()) - path.length();
+  if (m_choice.best && f.cost >= m_choice.best->cost) return;
+  m_choice.best = f;
+  m_choice.way = Way{std::move(plan), std::move(path)};
+}
+
+std::optional<Explorer::Way> Explorer::chosen(bool last) {
+  Choice choice = std::exchange(m_choice, {});
+  if (choice.best) choice.useless.push_back(choice.best->pose);
   // If there is no way to any, it may be for where the vehicle stands.
-  if (way)
-    m_tried = std::move(useless);
+  if (choice.way)
+    m_tried = std::move(choice.useless);
   else if (last)
-    m_seen.insert(m_seen.end(), useless.begin(), useless.end());
-  return way;
+    m_seen.insert(m_seen.end(), choice.useless.begin(), choice.useless.end());
+  return std::move(choice.way);
 }
 
 void Explorer::end(bool drives) {
@@ -349,7 +365,9 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
   const int key = planner.ground().keyOf(z);
   const GroundFlood flood(planner, from, key, kFrontierRadius);
   const GoalRegion region(planner, flood.columns(), flood.reached(), from, z, goal);
+  constexpr std::size_t kColumnsOfWork = 4;
   Exploration found;
+  found.work = flood.columns().size() / kColumnsOfWork;
   found.enclosed = region.isEnclosed();
   found.goalReached = region.isGoalReached();
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;

@@ -22,8 +22,10 @@ using semantic_slam::SensorScan;
 namespace {
 
 /** Milliseconds of the processor that a thread takes, stage by stage. */
-class ThreadClock {
+class CpuClock {
  public:
+  explicit CpuClock(clockid_t of = CLOCK_THREAD_CPUTIME_ID) : m_of(of), m_begin(now()) {}
+
   /** Since it began, or since the last lap. */
   double lap() {
     const double end = now(), passed = end - m_begin;
@@ -32,13 +34,14 @@ class ThreadClock {
   }
 
  private:
-  static double now() {
+  double now() const {
     timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    clock_gettime(m_of, &t);
     return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
   }
 
-  double m_begin = now();
+  const clockid_t m_of;
+  double m_begin;
 };
 
 constexpr double kSameTime = 1e-6;  // s
@@ -196,7 +199,7 @@ void Navigator::correctState() {
 void Navigator::see(const std::vector<SensorScan>& seen, double seconds) {
   m_guidesNext = true;
   if (seen.empty()) return;
-  ThreadClock clock;
+  CpuClock clock;
   const Eigen::Isometry3d T_map_robot = m_mapper.T_map_odometry() * m_robot.T_odometry_robot;
   for (const SensorScan& scan : seen) m_movers.see(scan.cloud, T_map_robot * scan.T_robot_sensor);
   m_movers.update(seconds);
@@ -226,7 +229,7 @@ void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
 }
 
 Mapper::Place Navigator::locate(const std::vector<SensorScan>& seen, double seconds) {
-  ThreadClock clock;
+  CpuClock clock;
   const Mapper::Place at = m_mapper.locate(seen, m_robot.T_odometry_robot, seconds);
   if (!at.added) return at;
   correctState();
@@ -263,7 +266,7 @@ void Navigator::carve(const Mapper::Place& at, const std::vector<Eigen::Vector2d
 
 StageTimes Navigator::fill(const std::vector<SensorScan>& seen, const Mapper::Place& at,
                            const std::vector<Eigen::Vector2d>& left, double seconds) {
-  ThreadClock clock;
+  CpuClock clock;
   m_mapper.insert(seen, at, seconds);
   carve(at, left);
   StageTimes times{{"insert", clock.lap()}};
@@ -290,7 +293,7 @@ Mapper& Navigator::waitedFor() const {
 
 void Navigator::focus() {
   if (!m_options.focus.isOn()) return;
-  ThreadClock clock;
+  CpuClock clock;
   const PathTracker& tracker = m_controller.tracker();
   const Eigen::Vector3d robot(m_state.pose.x, m_state.pose.y, m_z);
   Abstraction(m_mapper.map())
@@ -306,7 +309,7 @@ std::size_t Navigator::numCompressedLeaves() {
 DriveCommand Navigator::step(double seconds) {
   if (isInserting() && seconds - m_insertingFrom >= m_options.mappingLatency - kSameTime) finish();
   if (m_guidesNext && mayGuide()) guide(seconds);
-  ThreadClock clock;
+  CpuClock clock;
   const Movers movers = m_movers.at(seconds);
   ObstaclePoints around = obstacles();
   addStanding(movers, m_state.pose, around);
@@ -327,10 +330,11 @@ bool Navigator::mayGuide() const {
 }
 
 void Navigator::guide(double seconds) {
-  ThreadClock clock;
+  CpuClock clock(CLOCK_PROCESS_CPUTIME_ID);  // searches have a thread, and nobody else works now
   m_guidesNext = m_restsFirst = false;
   if (m_views && m_conclusion.empty() && isTimeToChoose()) chooseView();
   if (m_conclusion.empty()) m_guide->update(m_state, m_z, m_controller, seconds);
+  m_guidesNext = m_guide->isSearching();
   note("replan", clock.lap());
 }
 

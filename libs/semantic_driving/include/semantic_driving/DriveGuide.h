@@ -44,6 +44,9 @@ class DriveGuide {
    * \param z height of the ground below the vehicle, meters \param seconds the time */
   void update(const DriveState& state, double z, DriveController& drive, double seconds);
 
+  /** Whether it looks for a path, and should be asked again soon: searches are spread over calls, a
+   * few hundredths of a second each. Meanwhile it goes on as before. */
+  bool isSearching() const { return m_open.has_value(); }
   Target target() const { return m_state.target(); }
   /** Where it drives in the end: the goal, or in its place the nearest pose that fits. */
   const mrpt::math::TPose2D& goal() const { return m_aim; }
@@ -76,24 +79,34 @@ class DriveGuide {
   struct Departure {
     mrpt::math::TPose2D pose;
     double z;
-    DrivePath before;  ///< from the vehicle to there; may be empty
+    double along;  ///< the present path, meters
+    bool isAhead;  ///< on that path; otherwise where the vehicle was when it asked
+  };
+  /** A question that is being answered. */
+  struct Open {
+    Departure from;
+    bool enclosed = false;  ///< Exploration::enclosed
   };
 
   std::optional<GoalMisfit> misfit(const Situation& now) const;
   bool isNearGoal(const DriveState& state) const;
   Look look(const Situation& now) const;
   Departure departureOf(const Situation& now, From from) const;
+  bool isPast(const Departure& from, const Situation& now) const;
+  DrivePath until(const Departure& from, const Situation& now) const;
   DrivePath untilRest(const Situation& now) const;
   void apply(const Action& action, const Situation& now, DriveController& drive);
 
-  /** Leaves in m_found what it finds. */
-  Answer answer(const Action& question, const Situation& now);
-  DrivePath joined(const Departure& from, DrivePath path) const;
+  /** Leaves in m_found what it finds. \return none: it is still looking */
+  std::optional<Answer> answer(const Action& question, const Situation& now);
+  DrivePath joined(const Departure& from, const Situation& now, DrivePath path) const;
   bool improves(const Departure& from, const Situation& now);
   bool isEarly(const Situation& now) const;
   bool isBetter(const Situation& now) const;
-  std::optional<DrivePath> toGoal(const Departure& from);
-  std::optional<DrivePath> toFrontier(const Departure& from, bool last, bool& enclosed);
+  bool toGoal(From from, const Situation& now);
+  bool toFrontier(const SeekFrontier& question, const Situation& now);
+  void explore();
+  bool mayWait(const Situation& now) const;
   std::optional<DrivePath> recovery(const Situation& now, bool blind);
   std::optional<DrivePath> back(const Situation& now) const;
   bool aimsElsewhere(const Situation& now);
@@ -108,6 +121,9 @@ class DriveGuide {
   std::optional<GoalMisfit> m_misfit;  ///< as seen last
   std::optional<RefusedGoal> m_refusal;
   GuideState m_state;
+  Action m_question;  ///< that is open
+  std::optional<Open> m_open;
+  std::size_t m_work = 0;            ///< that may still be done in this call
   std::optional<DrivePath> m_found;  ///< by the last question, if anything
   semantic_planning::PlanResult m_plan;
   bool m_planned = false;  ///< the planner's roadmap is for the goal

@@ -45,6 +45,7 @@ struct Exploration {
   /** Known ground leads to the goal's place, though perhaps not for a vehicle that has to turn, or
    * is to stand there. */
   bool goalReached = false;
+  std::size_t work = 0;  ///< what finding that took, as SemanticPlanner::goOn() counts it
 };
 
 /** Places on drivable ground next to unknown space from which to see more of the way to a goal,
@@ -86,12 +87,15 @@ class Explorer {
     semantic_planning::PlanResult plan;
     DrivePath path;
   };
-  /** To the one of places() that costs least, if what its path costs beyond its length, as changes
-   * of gear and meters backwards do, counts, too.
-   * \param joined makes of a planned path what is driven
+  /** To the one of some places that costs least, if what its path costs beyond its length, as
+   * changes of gear and meters backwards do, counts, too. It is planned in slices. */
+  void beginToChoose(std::vector<Frontier> places, const mrpt::math::TPose2D& from, double z);
+  /** \param joined makes of a planned path what is driven
+   * \param work as SemanticPlanner::goOn() has it \return whether the choice is made */
+  bool goOn(const std::function<DrivePath(DrivePath)>& joined, std::size_t& work);
+  /** What was chosen, if any can be reached.
    * \param last places that are not reached are not tried again, even if none can be */
-  std::optional<Way> choose(const Exploration& places, const mrpt::math::TPose2D& from, double z,
-                            const std::function<DrivePath(DrivePath)>& joined, bool last);
+  std::optional<Way> chosen(bool last);
   /** The way that was chosen last is driven, or not: then its place may be chosen again. */
   void end(bool drives);
 
@@ -103,9 +107,24 @@ class Explorer {
 
  private:
   using Poses = std::vector<mrpt::math::TPose2D>;
+  /** One that is being made. */
+  struct Choice {
+    std::vector<Frontier> places;
+    mrpt::math::TPose2D from;
+    double z = 0;
+    std::size_t next = 0;  ///< of the places
+    bool isPlanning = false;
+    std::optional<Frontier> best;
+    std::optional<Way> way;  ///< to the best one
+    Poses useless;           ///< what is not seen from there, is not seen
+  };
+
+  void consider(Frontier f, semantic_planning::PlanResult plan,
+                const std::function<DrivePath(DrivePath)>& joined);
 
   semantic_planning::SemanticPlanner& m_planner;
   Effort m_effort;
+  Choice m_choice;
   bool m_wasThere = false, m_exhausted = false;
   std::optional<mrpt::math::TPose2D> m_pose;  ///< where the vehicle was last
   Poses m_seen;                               ///< visited, or not to be reached

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <climits>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -12,30 +13,44 @@ namespace semantic_planning {
 
 /** Tiles that are set, each with a T of its own, within a rectangle that grows as they are: by more
  * than needed, so that it seldom does. Of what is not set a pointer is all that is taken: ground
- * along a way is a small part of its rectangle. */
+ * along a way is a small part of its rectangle. A copy shares the tiles until one of the two is
+ * about to change. */
 template <class T>
 class ColumnGrid {
  public:
   /** Null: it is not set. */
   const T* find(Column tile) const {
-    const int x = tile.x - m_first.x, y = tile.y - m_first.y;
-    if (x < 0 || y < 0 || x >= m_width || y >= m_height) return nullptr;
-    return m_tiles[static_cast<std::size_t>(y) * m_width + x].get();
+    const std::int32_t number = numberOf(tile);
+    return number == kNoTile ? nullptr : at(number);
   }
-  T* find(Column tile) { return const_cast<T*>(static_cast<const ColumnGrid*>(this)->find(tile)); }
+  T* find(Column tile) {
+    const std::int32_t number = numberOf(tile);
+    return number == kNoTile ? nullptr : own(m_tiles[static_cast<std::size_t>(number)]);
+  }
+  /** The rectangle's tiles are numbered row by row; kNoTile: it is outside. */
+  static constexpr std::int32_t kNoTile = -1;
+  std::size_t size() const { return m_tiles.size(); }
+  std::int32_t numberOf(Column tile) const {
+    const int x = tile.x - m_first.x, y = tile.y - m_first.y;
+    return x < 0 || y < 0 || x >= m_width || y >= m_height ? kNoTile : y * m_width + x;
+  }
+  Column tileOfNumber(std::int32_t number) const {
+    return {m_first.x + number % m_width, m_first.y + number / m_width};
+  }
+  const T* at(std::int32_t number) const { return m_tiles[static_cast<std::size_t>(number)].get(); }
   /** Makes the rectangle, which has nothing in it yet, reach from one tile to another: no more
    * memory is taken than that needs. */
   void cover(Column low, Column high) {
     m_first = low;
     m_width = high.x - low.x + 1;
     m_height = high.y - low.y + 1;
-    m_tiles = std::vector<std::unique_ptr<T>>(static_cast<std::size_t>(m_width) * m_height);
+    m_tiles = std::vector<std::shared_ptr<T>>(static_cast<std::size_t>(m_width) * m_height);
   }
   /** Sets it, if it is not. */
   T& at(Column tile) {
-    std::unique_ptr<T>& at = placeOf(tile);
-    if (!at) at = std::make_unique<T>();
-    return *at;
+    std::shared_ptr<T>& at = placeOf(tile);
+    if (!at) at = std::make_shared<T>();
+    return *own(at);
   }
 
   /** f(tile, T&) for the tiles from low to high that are set. */
@@ -52,10 +67,16 @@ class ColumnGrid {
   }
   template <class F>
   void forEach(F f) const {
-    const_cast<ColumnGrid*>(this)->forEach([&](Column tile, const T& t) { f(tile, t); });
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(size()); ++i)
+      if (const T* const tile = at(i)) f(tileOfNumber(i), *tile);
   }
 
  private:
+  static T* own(std::shared_ptr<T>& tile) {
+    if (tile.use_count() > 1) tile = std::make_shared<T>(*tile);
+    return tile.get();
+  }
+
   /** Makes a range of `size` from `first` on hold `at`. */
   static void stretch(int at, int& first, int& size) {
     if (size == 0) first = at;
@@ -65,7 +86,7 @@ class ColumnGrid {
     first = low;
   }
 
-  std::unique_ptr<T>& placeOf(Column tile) {
+  std::shared_ptr<T>& placeOf(Column tile) {
     const auto isWithin = [](int at, int first, int size) {
       return at >= first && at < first + size;
     };
@@ -91,7 +112,7 @@ class ColumnGrid {
 
   Column m_first;
   int m_width = 0, m_height = 0;
-  std::vector<std::unique_ptr<T>> m_tiles;
+  std::vector<std::shared_ptr<T>> m_tiles;
 };
 
 /** The smallest rectangle with some columns of one tile. */

@@ -117,6 +117,18 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   }
 }
 
+Ground::Ground(const Ground& of, std::unique_ptr<GroundTiles> tiles)
+    : m_tiles(std::move(tiles)),
+      m_map(of.m_map),
+      m_voxelSize(of.m_voxelSize),
+      m_clearance(of.m_clearance),
+      m_perMeter(of.m_perMeter),
+      m_step(of.m_step),
+      m_largestClearance(of.m_largestClearance),
+      m_isLimited(true) {}
+
+Ground Ground::frozen() const { return Ground(*this, m_tiles->frozen()); }
+
 Ground::~Ground() = default;
 Ground::Ground(Ground&&) noexcept = default;
 

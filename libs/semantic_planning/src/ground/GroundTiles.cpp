@@ -186,6 +186,12 @@ std::vector<Column> GroundTiles::finished(std::vector<ColumnBox> changed) {
   return tilesOf(changed);
 }
 
+std::unique_ptr<GroundTiles> GroundTiles::frozen() const {
+  auto tiles = std::make_unique<GroundTiles>(m_map, m_shape);
+  tiles->m_surfaces = m_surfaces;
+  return tiles;
+}
+
 std::vector<Column> GroundTiles::known() const {
   std::vector<Column> tiles;
   m_columns.forEach([&](Column tile, const ColumnTile&) { tiles.push_back(tile); });

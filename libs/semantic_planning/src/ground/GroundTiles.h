@@ -44,6 +44,9 @@ class GroundTiles {
    * are made square by square and forgotten. */
   void readWithin(const std::vector<Column>& tiles);
 
+  /** The surfaces as they are now, without the stages before. */
+  std::unique_ptr<GroundTiles> frozen() const;
+
   /** Tiles that may have surfaces, or stages before. */
   std::vector<Column> known() const;
 

@@ -1,7 +1,10 @@
 #include "CostField.h"
 
+#include <algorithm>
 #include <cmath>
-#include <utility>
+#include <cstdlib>
+
+#include "Slices.h"
 
 namespace semantic_planning {
 
@@ -18,39 +21,48 @@ constexpr double kShare = 0.96;
 
 CostField::CostField(const GroundPose& center, double radius, const CollisionChecker& checker,
                      const ClassPrices& prices)
-    : m_checker(checker), m_prices(prices) {
-  const Ground& ground = checker.ground();
-  const int reach = static_cast<int>(radius / ground.voxelSize());
-  const Column c = ground.columnAt(center.pose.x, center.pose.y);
-  m_low = {c.x - reach, c.y - reach};
-  m_edge = 2 * reach + 1;
-  m_cells.resize(static_cast<std::size_t>(m_edge) * static_cast<std::size_t>(m_edge));
+    : m_checker(checker),
+      m_prices(prices),
+      m_center(checker.ground().columnAt(center.pose.x, center.pose.y)),
+      m_reach(static_cast<int>(radius / checker.ground().voxelSize())),
+      m_field(checker.ground()) {
   for (std::size_t i = 0; i < m_wheels.size(); ++i)
     for (const double y : checker.wheels()) {
-      const double angle = static_cast<double>(i) * M_PI / 4, voxels = y / ground.voxelSize();
+      const double angle = static_cast<double>(i) * M_PI / 4;
+      const double voxels = y / checker.ground().voxelSize();
       m_wheels[i].push_back({static_cast<int>(std::lround(-std::sin(angle) * voxels)),
                              static_cast<int>(std::lround(std::cos(angle) * voxels))});
     }
 }
 
-int CostField::indexOf(Column c) const {
-  const int x = c.x - m_low.x, y = c.y - m_low.y;
-  return x < 0 || y < 0 || x >= m_edge || y >= m_edge ? -1 : y * m_edge + x;
+CostField::Place CostField::placeAt(const GroundPose& pose) const {
+  const Ground& ground = m_checker.ground();
+  return m_field.placeNear(ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 2 * ground.step());
 }
 
 void CostField::add(const GroundPose& pose, Length cost) {
-  const int index = indexOf(pose);
-  if (index < 0 || m_cells[static_cast<std::size_t>(index)].cost <= cost) return;
-  m_cells[static_cast<std::size_t>(index)].cost = cost;
-  m_queue.push({cost, index, pose.z});
+  if (const Place place = placeAt(pose); place.surface) reach(place, cost);
 }
 
-Length CostField::ofStep(Column to, int z, std::size_t direction) const {
+bool CostField::contains(Column c) const {
+  return std::max(std::abs(c.x - m_center.x), std::abs(c.y - m_center.y)) <= m_reach;
+}
+
+void CostField::reach(const Place& place, Length cost) {
+  if (!contains(place.column)) return;
+  Length& known = m_field.label(place.cell).cost;
+  if (known <= cost) return;
+  known = cost;
+  m_queue.push(cost, place.cell);
+}
+
+Length CostField::ofStep(const Place& to, std::size_t direction) const {
   const Ground& ground = m_checker.ground();
   const Surface* worst = nullptr;
   Rank rank = -1;
   for (const Column& wheel : m_wheels[direction]) {
-    const Surface* s = ground.near({to.x + wheel.x, to.y + wheel.y}, z, 2 * ground.step());
+    const Surface* s = m_field.near({to.column.x + wheel.x, to.column.y + wheel.y}, to.surface->z,
+                                    2 * ground.step());
     if (!s) return kUnreached;
     if (const Rank r = m_checker.order().rank(s->classId); r > rank) worst = s, rank = r;
   }
@@ -61,40 +73,29 @@ Length CostField::ofStep(Column to, int z, std::size_t direction) const {
 }
 
 /** To its neighbors, from each of which a step leads here. */
-void CostField::leave(const Entry& entry) {
-  const Ground& ground = m_checker.ground();
-  const Column here{m_low.x + entry.index % m_edge, m_low.y + entry.index / m_edge};
+void CostField::leave(const Place& here, Length cost) {
   for (std::size_t i = 0; i < kSteps.size(); ++i) {
-    const Length step = ofStep(here, entry.z, i);
+    const Length step = ofStep(here, i);
     if (step == kUnreached) continue;
     for (const int side : {1, -1}) {
-      const Column from{here.x + side * kSteps[i].x, here.y + side * kSteps[i].y};
-      const int index = indexOf(from);
-      if (index < 0) continue;
-      Cell& cell = m_cells[static_cast<std::size_t>(index)];
-      if (cell.cost <= entry.cost + step) continue;
-      const Surface* s = ground.near(from, entry.z, ground.step());
-      if (!s || !s->drivable) continue;
-      cell.cost = entry.cost + step;
-      m_queue.push({cell.cost, index, s->z});
+      const Place from = m_field.placeNear(
+          {here.column.x + side * kSteps[i].x, here.column.y + side * kSteps[i].y}, here.surface->z,
+          m_checker.ground().step());
+      if (from.surface) reach(from, cost + step);
     }
   }
 }
 
-void CostField::spread(Length most, const GroundPose* until) {
-  const int last = until ? indexOf(*until) : -1;
-  while (!m_queue.empty()) {
-    const Entry entry = m_queue.top();
-    if (entry.cost >= most || entry.index == last) return;
-    m_queue.pop();
-    if (std::exchange(m_cells[static_cast<std::size_t>(entry.index)].done, true)) continue;
-    leave(entry);
+Length CostField::at(const GroundPose& pose) {
+  const Place asked = placeAt(pose);
+  if (!asked.surface || !contains(asked.column)) return kUnreached;
+  const Length& known = m_field.label(asked.cell).cost;
+  while (!m_queue.empty() && m_queue.top().first < std::min(known, m_most)) {
+    const auto [cost, cell] = m_queue.pop();
+    Slices::count(1);
+    if (cost == m_field.label(cell).cost) leave(m_field.placeOf(cell), cost);
   }
-}
-
-Length CostField::at(const GroundPose& pose) const {
-  const int index = indexOf(pose);
-  return index < 0 ? kUnreached : m_cells[static_cast<std::size_t>(index)].cost;
+  return known;
 }
 
 }  // namespace semantic_planning

@@ -50,6 +50,7 @@ class KeptPath {
   /** \param least what the way of a vehicle costs that turns on the spot, meters */
   void keep(const PlanResult& plan, double least);
   void drop() { m_plan = {}; }
+  bool isKept() const { return m_plan.found(); }
   /** Looks again at the path if it comes near one of these tiles. */
   void groundChanged(const std::vector<Column>& tiles);
 

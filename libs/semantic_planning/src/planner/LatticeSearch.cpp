@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "Slices.h"
+
 namespace semantic_planning {
 
 using colored_graph::Length;
@@ -87,6 +89,7 @@ Length LatticeSearch::limit(const Place& to, bool forward) const {
 }
 
 void LatticeSearch::connect(const Place& from, Place& to) {
+  Slices::count(20);
   for (const ReedsSheppCurve& curve : m_cost.curves(from.pose.pose, to.pose.pose))
     if (curve.length() <= kLongest) connect(from, to, curve);
 }

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "PathTracing.h"
+#include "Slices.h"
 #include "vehicle/TangentArc.h"
 
 namespace semantic_planning {
@@ -197,6 +198,7 @@ class Smoothing {
         !m_seen.insert({m_parts[r.before].number, m_parts[r.after].number, r.leave}).second)
       return false;
     --m_looks;
+    Slices::count(20);
     std::vector<Part> parts = partsOf(r);
     if (!evaluate(r, parts)) return false;
     const auto begin = m_parts.begin() + static_cast<std::ptrdiff_t>(r.before),

@@ -28,45 +28,42 @@ PlanResult cancelledPlan() {
  * 3. if there is none, or one that costs much more than that way: from pose to pose, improved
  *    alike. Where classes come before length, the roadmap's path takes its place: the way that
  * turns on the spot may slip over a strip of a voxel, and no price leads around it. */
-PlanResult PlannerCore::solve(StageClock& clock) {
-  if (needsRoadmap(m_options)) return searchRoadmap(clock);
-  if (isCancelled()) return cancelledPlan();
-  const RelaxedPath relaxed = relaxedPath();
-  clock.end("relaxed");
-  const PlanResult result = solve(relaxed, clock);
-  m_kept.drop();
-  if (result.found()) m_kept.keep(result, relaxed.price);
-  return result;
-}
-
-/** No search at all if the vehicle is on a path that is free and nothing can cost clearly less. */
-PlanResult PlannerCore::keepOrSolve(StageClock& clock) {
-  std::optional<PlanResult> rest;
-  if (!needsRoadmap(m_options)) rest = m_kept.restFrom(*m_startPose);
-  if (!rest) return solve(clock);
-  if (m_kept.isOfThisGround()) return *rest;
-  const RelaxedPath relaxed = relaxedPath();
-  clock.end("relaxed");
-  if (!m_kept.mayBeBeaten(*rest, relaxed.price)) return *rest;
-  PlanResult other = solve(relaxed, clock);
-  if (!other.found() || rest->price <= other.price) other = std::move(*rest);
-  m_kept.keep(other, relaxed.price);
-  return other;
-}
-
-PlanResult PlannerCore::solve(const RelaxedPath& relaxed, StageClock& clock) {
-  PlanResult result = pathBeside(relaxed.path, false, m_checker, m_prices);
+PlanResult PlannerCore::pathBy(const RelaxedPath& relaxed, const Task& task, StageClock& clock) {
+  const CollisionChecker& checker = task.checker;
+  PlanResult result = pathBeside(relaxed.path, false, checker, m_prices);
   clock.end("beside");
   if (result.found() && result.price <= mostOf(relaxed)) return result;
   if (isCancelled()) return cancelledPlan();
-  const std::vector<PathPoint> way =
-      m_options.strict ? searchRoadmap(clock).path
-                       : wayBetween(*m_startPose, *m_goalPose, m_checker, m_prices);
+  const std::vector<PathPoint> way = m_options.strict
+                                         ? searchRoadmap(clock).path
+                                         : wayBetween(task.start, task.goal, checker, m_prices);
   clock.end("way");
-  PlanResult other = pathBeside(way, true, m_checker, m_prices);
+  PlanResult other = pathBeside(way, true, checker, m_prices);
   clock.end("shorten");
   if (!result.found() || (other.found() && other.price < result.price)) result = std::move(other);
-  return result.found() ? result : noPath(relaxed);
+  return result.found() ? result : noPath(relaxed, task);
+}
+
+/** What is left of a path stays if nothing costs clearly less. */
+PlannerCore::Solution PlannerCore::solve(const Task& task, StageClock& clock) {
+  if (needsRoadmap(m_options)) return {searchRoadmap(clock), {}};
+  if (isCancelled() && !task.rest) return {cancelledPlan(), {}};
+  // Where the ground does not connect them, that is known before any other search.
+  const RelaxedPath relaxed = searchRelaxed(task.checker, task.start, task.goal);
+  clock.end("relaxed");
+  if (task.rest && !m_kept.mayBeBeaten(*task.rest, relaxed.price)) return {*task.rest, {}};
+  PlanResult result = pathBy(relaxed, task, clock);
+  if (task.rest && (!result.found() || task.rest->price <= result.price)) result = *task.rest;
+  return {std::move(result), relaxed.price};
+}
+
+PlanResult PlannerCore::take(Solution solution, StageClock& clock) {
+  if (solution.least) {
+    m_kept.drop();
+    if (solution.plan.found()) m_kept.keep(solution.plan, *solution.least);
+  }
+  solution.plan.times = clock.take();
+  return std::move(solution.plan);
 }
 
 }  // namespace semantic_planning

@@ -13,6 +13,7 @@
 #include "PathImprovement.h"
 #include "PathTracing.h"
 #include "Refusal.h"
+#include "Slices.h"
 #include "ground/ColumnGrid.h"
 
 namespace semantic_planning {
@@ -70,6 +71,23 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
 }
 
 }  // namespace
+
+/** A search that goes on while the ground changes. */
+struct PlannerCore::Sliced {
+  Sliced(PlannerCore& core, std::optional<PlanResult> rest)
+      : ground(core.m_ground.frozen()),
+        checker(ground, core.m_options.vehicle, core.order(), core.m_options.reading),
+        task{checker, *core.m_startPose, *core.m_goalPose, std::move(rest)},
+        slices([this, &core] { solution = core.solve(task, clock); }) {}
+
+  StageClock clock;
+  const Ground ground;
+  const CollisionChecker checker;
+  const Task task;
+  std::vector<Column> changed;  ///< tiles of the ground, since it began
+  Solution solution;
+  Slices slices;
+};
 
 PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
                          const colored_graph::ClassOrder& order, const PlannerOptions& options,
@@ -166,12 +184,10 @@ PlanningRegion PlannerCore::region() const {
   return m_corridor ? rectangle.near(m_corridor->way, buffer) : rectangle;
 }
 
-PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
-  StageClock clock;
+std::optional<PlanResult> PlannerCore::prepare(const Place& start, const Place& goal,
+                                               StageClock& clock) {
   PlanResult result;
-  checkFinite("start", start);
-  checkFinite("goal", goal);
-  const Change change(*this);
+  abandon();
   m_search->forget();
   m_roadmap.reset();
   m_kept.drop();
@@ -179,10 +195,16 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   followMap(clock);
   standAt(start);
   m_hasPlanned = !refuse(start, goal, result);
-  if (!m_hasPlanned) return result;
-  result = solve(clock);
-  result.times = clock.take();
-  return result;
+  return m_hasPlanned ? std::nullopt : std::optional(result);
+}
+
+PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
+  StageClock clock;
+  checkFinite("start", start);
+  checkFinite("goal", goal);
+  const Change change(*this);
+  if (const auto refused = prepare(start, goal, clock)) return *refused;
+  return take(solve({m_checker, *m_startPose, *m_goalPose, {}}, clock), clock);
 }
 
 void PlannerCore::standAt(const Place& start) {
@@ -231,22 +253,16 @@ PlanResult PlannerCore::searchRoadmap(StageClock& clock) {
   return result;
 }
 
-/** Where the ground does not connect them, that is known before any search. */
-RelaxedPath PlannerCore::relaxedPath() const {
-  return searchRelaxed(m_checker, *m_startPose, *m_goalPose);
-}
-
 /** "...; what can be reached ends at (3.1, 2.9), 4.2 m from the goal" */
-PlanResult PlannerCore::noPath(const RelaxedPath& relaxed) const {
+PlanResult PlannerCore::noPath(const RelaxedPath& relaxed, const Task& task) const {
   PlanResult result;
   result.reason = "from pose to pose no way was found";
   if (!relaxed.nearest) return result;
-  const bool overForbidden =
-      !searchRelaxed(m_checker, *m_startPose, *m_goalPose, true).path.empty();
+  const bool overForbidden = !searchRelaxed(task.checker, task.start, task.goal, true).path.empty();
   if (overForbidden) result.status = PlanStatus::OnlyForbidden;
   result.obstacle = relaxed.nearest;
   const mrpt::math::TPoint2D& place = *relaxed.nearest;
-  const mrpt::math::TPose2D& goal = m_goalPose->pose;
+  const mrpt::math::TPose2D& goal = task.goal.pose;
   std::ostringstream text;
   const strict_files::ClassicNumbers classic(text);
   text << describe(overForbidden ? colored_graph::SearchStatus::OnlyForbidden
@@ -259,6 +275,7 @@ PlanResult PlannerCore::noPath(const RelaxedPath& relaxed) const {
 
 void PlannerCore::forget() {
   const Change change(*this);
+  abandon();
   m_search->forget();
   m_roadmap.reset();
   if (m_candidates) m_candidates->forget();
@@ -279,6 +296,8 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   }
   clock.end("ground");
   m_kept.groundChanged(change.tiles);
+  if (m_sliced)
+    m_sliced->changed.insert(m_sliced->changed.end(), change.tiles.begin(), change.tiles.end());
   if (m_candidates) change.points = m_candidates->update(touched, change.tiles);
   return change;
 }
@@ -320,17 +339,62 @@ void PlannerCore::moveEnds(Roadmap& map) {
   map.removeQueryVertex(before);
 }
 
-PlanResult PlannerCore::replan(const Place& start) {
-  StageClock clock;
-  PlanResult result;
+void PlannerCore::checkReplan(const Place& start) const {
   checkWhole();
   if (!m_hasPlanned) throw std::logic_error("SemanticPlanner: nothing was planned yet");
   checkFinite("start", start);
-  const Change change(*this);
+}
+
+void PlannerCore::abandon() {
+  m_sliced.reset();
+  m_known.reset();
+}
+
+/** No search at all if the vehicle is on a path that is free and nothing can cost clearly less. */
+std::optional<PlanResult> PlannerCore::prepareAgain(const Place& start,
+                                                    std::optional<PlanResult>& rest) {
+  PlanResult result;
+  abandon();
   if (refuse(start, m_goalPlace, result)) return result;
-  result = keepOrSolve(clock);
-  result.times = clock.take();
-  return result;
+  if (!needsRoadmap(m_options)) rest = m_kept.restFrom(*m_startPose);
+  return rest && m_kept.isOfThisGround() ? rest : std::nullopt;
+}
+
+PlanResult PlannerCore::replan(const Place& start) {
+  StageClock clock;
+  std::optional<PlanResult> rest;
+  checkReplan(start);
+  const Change change(*this);
+  if (const auto known = prepareAgain(start, rest)) return *known;
+  return take(solve({m_checker, *m_startPose, *m_goalPose, rest}, clock), clock);
+}
+
+PlannerCore::~PlannerCore() = default;
+
+void PlannerCore::begin(const Place& start, const std::optional<Place>& goal) {
+  StageClock clock;
+  std::optional<PlanResult> rest;
+  if (goal) checkFinite("start", start), checkFinite("goal", *goal);
+  if (!goal) checkReplan(start);
+  const Change change(*this);
+  m_known = goal ? prepare(start, *goal, clock) : prepareAgain(start, rest);
+  if (!m_known && mayNeedRoadmap(m_options))
+    m_known = take(solve({m_checker, *m_startPose, *m_goalPose, rest}, clock), clock);
+  if (!m_known) m_sliced = std::make_unique<Sliced>(*this, std::move(rest));
+}
+
+std::optional<PlanResult> PlannerCore::goOn(std::size_t& work) {
+  checkWhole();
+  if (!m_known && !m_sliced) throw std::logic_error("SemanticPlanner: no plan was begun");
+  const Change change(*this);
+  if (m_known) return std::exchange(m_known, {});
+  if (!m_sliced->slices.goOn(work)) return std::nullopt;
+  const std::unique_ptr<Sliced> done = std::move(m_sliced);
+  PlanResult result = take(std::move(done->solution), done->clock);
+  m_kept.groundChanged(done->changed);
+  if (!result.found() || m_kept.isKept()) return result;
+  m_sliced = std::make_unique<Sliced>(*this, std::nullopt);  // something is on the path by now
+  return goOn(work);
 }
 
 }  // namespace semantic_planning

@@ -35,12 +35,16 @@ class PlannerCore {
 
   PlannerCore(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
               const PlannerOptions& options, const std::optional<Corridor>& corridor);
+  ~PlannerCore();
 
   /** \throw std::invalid_argument saying what has a number that is not finite */
   static void checkFinite(const char* what, const Place& place);
   PlanResult plan(const Place& start, const Place& goal);
   UpdateResult update();
   PlanResult replan(const Place& start);
+  /** As plan() or, without a goal, replan(), in slices. */
+  void begin(const Place& start, const std::optional<Place>& goal);
+  std::optional<PlanResult> goOn(std::size_t& work);
   void forget();
   PlanStatus check(const Place& place) const;
 
@@ -92,12 +96,27 @@ class PlannerCore {
   /** Puts start and goal where they are now. */
   void moveEnds(Roadmap& map);
   bool isCancelled() const { return m_options.cancelled && m_options.cancelled(); }
-  PlanResult solve(StageClock& clock);
-  PlanResult solve(const RelaxedPath& relaxed, StageClock& clock);
-  PlanResult keepOrSolve(StageClock& clock);
+  struct Task {
+    const CollisionChecker& checker;
+    GroundPose start, goal;
+    std::optional<PlanResult> rest;  ///< of the path that is kept
+  };
+  struct Solution {
+    PlanResult plan;
+    /** The way of a vehicle that turns on the spot, meters; none: what is kept stays as it is. */
+    std::optional<double> least;
+  };
+  struct Sliced;
+  void checkReplan(const Place& start) const;
+  void abandon();
+  /** \return a result that is known without a search */
+  std::optional<PlanResult> prepare(const Place& start, const Place& goal, StageClock& clock);
+  std::optional<PlanResult> prepareAgain(const Place& start, std::optional<PlanResult>& rest);
+  PlanResult pathBy(const RelaxedPath& relaxed, const Task& task, StageClock& clock);
+  Solution solve(const Task& task, StageClock& clock);
+  PlanResult take(Solution solution, StageClock& clock);
   PlanResult searchRoadmap(StageClock& clock);
-  RelaxedPath relaxedPath() const;
-  PlanResult noPath(const RelaxedPath& relaxed) const;
+  PlanResult noPath(const RelaxedPath& relaxed, const Task& task) const;
   /** Between start and goal. */
   PlanningRegion region() const;
 
@@ -116,7 +135,9 @@ class PlannerCore {
   VertexId m_start = colored_graph::kNoVertex, m_goal = colored_graph::kNoVertex;
   std::unique_ptr<colored_graph::GraphSearch> m_search;  ///< of the roadmap's graph
   bool m_hasPlanned = false, m_broken = false;
-  double m_evaluating = 0;  ///< milliseconds of the present search
+  double m_evaluating = 0;            ///< milliseconds of the present search
+  std::optional<PlanResult> m_known;  ///< what was begun, if it needs no slices
+  std::unique_ptr<Sliced> m_sliced;
 };
 
 }  // namespace semantic_planning

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "PathTracing.h"
+#include "Slices.h"
 
 namespace semantic_planning {
 
@@ -51,13 +53,13 @@ Length PoseSearch::ofChange(const Node& from, const CurveState& to) const {
 }
 
 Length PoseSearch::excess(Length cost) {
-  m_field.spread(cost, &m_task.start);
+  m_field.limit(cost);
   return cost - std::min(cost, m_field.at(m_task.start));
 }
 
 std::optional<PoseSearch::Way> PoseSearch::run(Length most) {
   m_most = most;
-  m_field.spread(most, nullptr);
+  m_field.limit(most);
   const Length rest = m_field.at(m_task.start);
   if (rest == CostField::kUnreached) return std::nullopt;
   m_good = static_cast<Length>(kGood * static_cast<double>(rest)) + lengthDown(kTurning);
@@ -66,6 +68,7 @@ std::optional<PoseSearch::Way> PoseSearch::run(Length most) {
     const Entry entry = m_queue.top();
     if (m_task.weight == 1 && entry.estimate >= m_most) break;
     m_queue.pop();
+    Slices::count(30);
     join(entry.node);
     goOn(entry.node);
   }
@@ -168,28 +171,7 @@ std::vector<PathPoint> PoseSearch::joined() const {
   return path;
 }
 
-std::vector<PathPoint> wayBetween(const GroundPose& start, const GroundPose& goal,
-                                  const CollisionChecker& checker, const ClassPrices& prices) {
-  constexpr double kBeside = 20, kReach = 15, kWeight = 2.4;  // m, m
-  constexpr int kPoses = 4000, kPosesAfter = 300, kShare = 3;
-  constexpr Length kMost = Length{1} << 62;
-  const double turn = checker.reedsShepp().turningRadius(),
-               distance = std::hypot(goal.pose.x - start.pose.x, goal.pose.y - start.pose.y);
-  PoseSearch search({start, distance + kBeside, kReach + 2 * turn, kReach + 3 * turn + distance,
-                     kWeight, kPoses, kPosesAfter, kShare},
-                    checker, prices);
-  search.addRest(goal, 0);
-  search.add({goal, std::nullopt, 0, 0});
-  const auto way = search.run(kMost);
-  return way ? way->path : std::vector<PathPoint>();
-}
-
 namespace {
-
-/** To turn around costs as much anywhere: that is no reason to look for another way. */
-double costOfTurning(const CollisionChecker& checker) {
-  return M_PI * checker.reedsShepp().turningRadius() + checker.motionCost().gearChange();
-}
 
 /** As if driven from its end to its begin. */
 std::vector<PathPoint> reversed(const std::vector<PathPoint>& path) {
@@ -202,6 +184,41 @@ std::vector<PathPoint> reversed(const std::vector<PathPoint>& path) {
     back[i].arcLength = path.back().arcLength - back[i].arcLength;
   }
   return back;
+}
+
+/** \param isReversed looks from the goal on for a way that leads back to the start */
+std::vector<PathPoint> wayFromOneEnd(const GroundPose& start, const GroundPose& goal,
+                                     bool isReversed, const CollisionChecker& checker,
+                                     const ClassPrices& prices) {
+  constexpr double kBeside = 20, kReach = 15, kWeight = 2.4;  // m, m
+  constexpr int kPoses = 2000, kPosesAfter = 300, kShare = 3;
+  constexpr Length kMost = Length{1} << 62;
+  const double turn = checker.reedsShepp().turningRadius(),
+               distance = std::hypot(goal.pose.x - start.pose.x, goal.pose.y - start.pose.y);
+  const auto [from, to] = isReversed ? std::tie(goal, start) : std::tie(start, goal);
+  PoseSearch search({from, distance + kBeside, kReach + 2 * turn, kReach + 3 * turn + distance,
+                     kWeight, kPoses, kPosesAfter, kShare, isReversed},
+                    checker, prices);
+  search.addRest(to, 0);
+  search.add({to, std::nullopt, 0, 0});
+  const auto way = search.run(kMost);
+  if (!way) return {};
+  return isReversed ? reversed(way->path) : way->path;
+}
+
+}  // namespace
+
+std::vector<PathPoint> wayBetween(const GroundPose& start, const GroundPose& goal,
+                                  const CollisionChecker& checker, const ClassPrices& prices) {
+  const auto way = wayFromOneEnd(start, goal, false, checker, prices);
+  return way.empty() ? wayFromOneEnd(start, goal, true, checker, prices) : way;
+}
+
+namespace {
+
+/** To turn around costs as much anywhere: that is no reason to look for another way. */
+double costOfTurning(const CollisionChecker& checker) {
+  return M_PI * checker.reedsShepp().turningRadius() + checker.motionCost().gearChange();
 }
 
 CurveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }

@@ -1,11 +1,14 @@
 #include "Refusal.h"
 
+#include <strict_files/TextFile.h>
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iomanip>
 #include <map>
+#include <sstream>
 
 #include "ground/GroundTiles.h"
 #include "vehicle/CurveWalk.h"
@@ -23,6 +26,20 @@ std::string forbidden(const Ground& ground, ClassId id) {
   return "ground of " + named(ground, id) + ", which the order forbids";
 }
 
+/** Of a class that the vehicle may drive on nothing stands up: the label was wrong, or it is what
+ * somebody who passed has left in the map. \param voxels above the ground */
+std::string standing(const CollisionChecker& checker, ClassId id, int voxels) {
+  const std::string name = named(checker.ground(), id);
+  if (id == semantic_types::kNoClass || checker.order().rank(id) == colored_graph::kForbidden)
+    return "an obstacle (" + name + ")";
+  std::ostringstream text;
+  const strict_files::ClassicNumbers classic(text);
+  text << "something " << std::fixed << std::setprecision(1)
+       << std::max(1, voxels) * checker.ground().voxelSize() << " m high, labeled " << name
+       << ": a wrong label, or what somebody left who passed";
+  return text.str();
+}
+
 /** A surface at this height, in a column or one next to it; or null. */
 const Surface* surfaceAround(const Ground& ground, Column c, int z) {
   for (int y = c.y - 1; y <= c.y + 1; ++y)
@@ -32,11 +49,12 @@ const Surface* surfaceAround(const Ground& ground, Column c, int z) {
 }
 
 /** \param z of the ground that the vehicle stands upon */
-std::string whatIsAt(const Ground& ground, const Obstacle& obstacle, int z) {
+std::string whatIsAt(const CollisionChecker& checker, const Obstacle& obstacle, int z) {
+  const Ground& ground = checker.ground();
   const int step = ground.step();
   if (obstacle.z > z + step)
     if (const Surface* s = surfaceAround(ground, obstacle.column, obstacle.z))
-      return "an obstacle (" + named(ground, s->classId) + ")";
+      return standing(checker, s->classId, s->z - z);
   if (const Surface* s = ground.near(obstacle.column, obstacle.z, step))
     return s->drivable ? forbidden(ground, s->classId) : "ground too steep";
   const ColumnTile tile =
@@ -44,7 +62,7 @@ std::string whatIsAt(const Ground& ground, const Obstacle& obstacle, int z) {
   const int column = indexInTile(obstacle.column), height = ground.layers().shape().height;
   for (const Run* run = tile.runs.begin(column); run != tile.runs.end(column); ++run)
     if (run->top > obstacle.z + step && run->bottom <= obstacle.z + height)
-      return "an obstacle (" + named(ground, run->topClass) + ")";
+      return standing(checker, run->topClass, run->top - z);
   return tile.isOverDrop(column, obstacle.z, obstacle.z, step, height) ? "a drop"
                                                                        : "ground not known";
 }
@@ -67,7 +85,7 @@ Refusal blocking(const CollisionChecker& checker, const GroundPose& pose) {
     nearest = std::min(nearest, distance);
   }
   return {{ground.centerOf(obstacle.column.x), ground.centerOf(obstacle.column.y)},
-          whatIsAt(ground, obstacle, pose.z)};
+          whatIsAt(checker, obstacle, pose.z)};
 }
 
 /** The first wheel that is over forbidden ground. */

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <vector>
 
-#include "ground/SurfaceTile.h"
-#include "roadmap/PlanningRegion.h"
+#include "ground/GroundTiles.h"
 
 namespace semantic_planning {
 
@@ -27,24 +27,20 @@ class RelaxedField {
  public:
   using Cost = std::int64_t;
   static constexpr Cost kUnreached = std::numeric_limits<Cost>::max();
-  static constexpr std::int32_t kNone = -1;
 
   /** Names a surface. Sorted by tile, column, and height. */
   struct Cell {
-    std::int32_t tile = kNone;
+    std::int32_t tile = SurfaceGrid::kNoTile;
     std::uint16_t index = 0;  ///< in the tile
-    explicit operator bool() const { return tile != kNone; }
+    std::uint8_t column = 0;  ///< of the tile, which the index says as well, but not as soon
+    explicit operator bool() const { return tile != SurfaceGrid::kNoTile; }
     bool operator==(const Cell& o) const { return tile == o.tile && index == o.index; }
     bool operator<(const Cell& o) const { return tile != o.tile ? tile < o.tile : index < o.index; }
   };
 
   struct Label {
     Cost cost = kUnreached;
-    std::int32_t tileBefore = kNone;
-    std::uint16_t indexBefore = 0;
-    std::int8_t step = 0;  ///< with which it was reached
-    bool done = false;
-    Cell before() const { return {tileBefore, indexBefore}; }
+    Cell before;
   };
 
   /** Where a surface is. */
@@ -55,7 +51,8 @@ class RelaxedField {
   };
 
   /** \param ground must outlive the field. */
-  explicit RelaxedField(const Ground& ground);
+  explicit RelaxedField(const Ground& ground)
+      : m_surfaces(ground.layers().surfaces()), m_labels(m_surfaces.size()) {}
 
   /** The column's drivable surface nearest to a height, at most `tolerance` voxels off; or null. */
   const Surface* near(Column c, int z, int tolerance) const;
@@ -65,16 +62,41 @@ class RelaxedField {
   Label& label(const Cell& cell);
 
  private:
-  struct Tile {
-    const SurfaceTile* surfaces = nullptr;
-    Column place;
-    std::int32_t number = kNone;
-    std::vector<Label> labels;  ///< of its surfaces; empty: nothing got there
-  };
-  Tile& tile(const Cell& cell) const { return *m_numbered[static_cast<std::size_t>(cell.tile)]; }
-
-  ColumnGrid<Tile> m_tiles;
-  std::vector<Tile*> m_numbered;
+  const SurfaceGrid& m_surfaces;
+  std::vector<std::unique_ptr<Label[]>> m_labels;  ///< by tile, of its surfaces; null: none reached
 };
+
+inline const Surface* RelaxedField::near(Column c, int z, int tolerance) const {
+  return placeNear(c, z, tolerance).surface;
+}
+
+inline RelaxedField::Place RelaxedField::placeNear(Column c, int z, int tolerance) const {
+  const std::int32_t number = m_surfaces.numberOf(tileOf(c));
+  const SurfaceTile* const tile = number == SurfaceGrid::kNoTile ? nullptr : m_surfaces.at(number);
+  if (!tile) return {};
+  const int column = indexInTile(c);
+  const Surface* best = nullptr;
+  int least = tolerance + 1;
+  for (const Surface& s : tile->column(column)) {
+    const int off = std::abs(s.z - z);
+    if (s.drivable && off < least) best = &s, least = off;
+  }
+  if (!best) return {};
+  const auto index = static_cast<std::uint16_t>(best - tile->surfaces.data());
+  return {c, best, {number, index, static_cast<std::uint8_t>(column)}};
+}
+
+inline RelaxedField::Place RelaxedField::placeOf(const Cell& cell) const {
+  const Column low = firstColumnOf(m_surfaces.tileOfNumber(cell.tile));
+  return {{low.x + cell.column % kTileEdge, low.y + cell.column / kTileEdge},
+          &m_surfaces.at(cell.tile)->surfaces[cell.index],
+          cell};
+}
+
+inline RelaxedField::Label& RelaxedField::label(const Cell& cell) {
+  std::unique_ptr<Label[]>& labels = m_labels[static_cast<std::size_t>(cell.tile)];
+  if (!labels) labels = std::make_unique<Label[]>(m_surfaces.at(cell.tile)->surfaces.size());
+  return labels[cell.index];
+}
 
 }  // namespace semantic_planning

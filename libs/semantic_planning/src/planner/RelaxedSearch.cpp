@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <queue>
 #include <utility>
 
 #include "ClassPrices.h"
+#include "MonotoneQueue.h"
 #include "RelaxedField.h"
+#include "Slices.h"
 
 namespace semantic_planning {
 
@@ -58,15 +59,16 @@ class RelaxedSearch {
     const Place from = placeAt(start);
     m_goal = placeAt(goal);
     if (!from.surface || !m_goal.surface) return;
-    reach(from, {0, RelaxedField::kNone, 0, 0, false});
+    reach(from, {0, {}});
     while (!m_queue.empty()) {
-      const Cell cell = m_queue.top().cell;
-      m_queue.pop();
+      const auto [estimate, cell] = m_queue.pop();
       if (cell == m_goal.cell) return traceTo(cell, guide);
-      if (std::exchange(m_field.label(cell).done, true)) continue;
       const Place place = m_field.placeOf(cell);
+      const Cost cost = m_field.label(cell).cost;
+      if (estimate != cost + bound(place.column)) continue;  // there was a better way to it
       noteNearest(place.column, guide);
-      for (std::size_t i = 0; i < m_steps.size(); ++i) take(i, place);
+      Slices::count(1);
+      for (const Step& step : m_steps) take(step, place, cost);
     }
   }
 
@@ -74,32 +76,24 @@ class RelaxedSearch {
   using Cell = RelaxedField::Cell;
   using Label = RelaxedField::Label;
   using Place = RelaxedField::Place;
-  struct Entry {
-    Cost estimate;
-    Cell cell;
-    bool operator<(const Entry& o) const {  // the least on top
-      return estimate != o.estimate ? estimate > o.estimate : o.cell < cell;
-    }
-  };
 
   Place placeAt(const GroundPose& p) const {
     return m_field.placeNear(m_checker.ground().columnAt(p.pose.x, p.pose.y), p.z, 0);
   }
 
-  void take(std::size_t number, const Place& from) {
-    const Step& step = m_steps[number];
+  /** \param before what it costs to be there */
+  void take(const Step& step, const Place& from, Cost before) {
     const Place to =
         m_field.placeNear(from.column + step.by, from.surface->z, m_checker.ground().step());
     if (!to.surface) return;
-    const Cost before = m_field.label(from.cell).cost;
     const Label& known = m_field.label(to.cell);
-    if (known.done || before + step.length >= known.cost) return;
+    if (before + step.length * m_weights.front() >= known.cost) return;
     colored_graph::Rank rank = rankAt(step, to);
     if (rank == colored_graph::kForbidden && m_overForbidden) rank = m_checker.order().ranks() - 1;
     if (rank == colored_graph::kForbidden) return;
     const Cost cost = before + step.length * m_weights[static_cast<std::size_t>(rank)];
     if (cost < known.cost && (to.cell == m_goal.cell || fits(step, to)))
-      reach(to, {cost, from.cell.tile, from.cell.index, static_cast<std::int8_t>(number), false});
+      reach(to, {cost, from.cell});
   }
 
   /** The worst under the wheels. */
@@ -125,7 +119,7 @@ class RelaxedSearch {
 
   void reach(const Place& place, const Label& reached) {
     m_field.label(place.cell) = reached;
-    m_queue.push({reached.cost + bound(place.column), place.cell});
+    m_queue.push(reached.cost + bound(place.column), place.cell);
   }
 
   Cost bound(Column c) const { return kWeightOfLength * stepsBetween(c, m_goal.column); }
@@ -152,7 +146,7 @@ class RelaxedSearch {
     guide.nearest.reset();
     guide.price = static_cast<double>(m_field.label(cell).cost) / kWeightOfLength / kStraightStep *
                   m_checker.ground().voxelSize();
-    for (; cell; cell = m_field.label(cell).before()) guide.path.push_back(pointAt(cell));
+    for (; cell; cell = m_field.label(cell).before) guide.path.push_back(pointAt(cell));
     std::reverse(guide.path.begin(), guide.path.end());
   }
 
@@ -161,7 +155,7 @@ class RelaxedSearch {
   RelaxedField m_field;
   const std::array<Step, 8> m_steps;
   const std::vector<Cost> m_weights;  ///< of a length, by rank
-  std::priority_queue<Entry> m_queue;
+  MonotoneQueue<Cell> m_queue;
   Place m_goal;
   double m_nearest = 0;  ///< columns from the goal
 };

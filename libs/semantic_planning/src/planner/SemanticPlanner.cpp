@@ -53,6 +53,19 @@ PlanResult SemanticPlanner::replan(const mrpt::math::TPose2D& start, std::option
   return m_core->replan({start, startZ});
 }
 
+void SemanticPlanner::begin(const mrpt::math::TPose2D& start,
+                            const std::optional<mrpt::math::TPose2D>& goal,
+                            std::optional<double> startZ, std::optional<double> goalZ) {
+  const ReadLock lock(*m_map);
+  m_core->begin({start, startZ},
+                goal ? std::optional(PlannerCore::Place{*goal, goalZ}) : std::nullopt);
+}
+
+std::optional<PlanResult> SemanticPlanner::goOn(std::size_t& work) {
+  const ReadLock lock(*m_map);
+  return m_core->goOn(work);
+}
+
 void SemanticPlanner::forget() { m_core->forget(); }
 
 const PlannerOptions& SemanticPlanner::options() const { return m_core->options(); }

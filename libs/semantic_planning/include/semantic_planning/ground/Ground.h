@@ -91,6 +91,10 @@ class Ground {
    * an update finds out for the whole ground: not for several threads at once. */
   bool connected(const GroundPoint& a, const GroundPoint& b) const;
 
+  /** A copy that stays as it is, of surfaces alone; it shares memory with this until this changes.
+   */
+  Ground frozen() const;
+
   /** The tiles that there are. */
   std::vector<Column> tiles() const;
 
@@ -98,6 +102,8 @@ class Ground {
   const GroundTiles& layers() const { return *m_tiles; }
 
  private:
+  Ground(const Ground& of, std::unique_ptr<GroundTiles> tiles);
+
   std::unique_ptr<GroundTiles> m_tiles;
   const semantic_octree::SemanticOcTree& m_map;
   double m_voxelSize, m_clearance;

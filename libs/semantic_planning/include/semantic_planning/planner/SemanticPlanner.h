@@ -87,6 +87,18 @@ class SemanticPlanner {
    * std::logic_error nothing was planned before. */
   PlanResult replan(const mrpt::math::TPose2D& start, std::optional<double> startZ = {});
 
+  /** plan(), and replan() without a goal, in slices: for those who have other things to do
+   * meanwhile, as a vehicle that drives. Between slices map and planner may be updated; the search
+   * goes on over the ground as it was when it began, and begins anew if something is on the path
+   * that it finds. Where a roadmap is used, all of it is done when it begins. plan(), replan() and
+   * forget() give up what was begun. \throw as plan() and replan() */
+  void begin(const mrpt::math::TPose2D& start, const std::optional<mrpt::math::TPose2D>& goal,
+             std::optional<double> startZ = {}, std::optional<double> goalZ = {});
+  /** \param work how much may be done, about as many columns of ground or 0.3 us each on one core
+   * of 2020; what is left of it stays there \return nothing: there is more to do.
+   * \throw std::logic_error nothing was begun */
+  std::optional<PlanResult> goOn(std::size_t& work);
+
   /** Forgets all that plans before have found out, but for the ground: the next plan() takes as
    * long as the first one. */
   void forget();
