@@ -96,6 +96,14 @@ class Explorer {
   /** What was chosen, if any can be reached.
    * \param last places that are not reached are not tried again, even if none can be */
   std::optional<Way> chosen(bool last);
+  /** All of that in one go. */
+  std::optional<Way> choose(const Exploration& places, const mrpt::math::TPose2D& from, double z,
+                            const std::function<DrivePath(DrivePath)>& joined, bool last) {
+    std::size_t work = std::numeric_limits<std::size_t>::max();
+    beginToChoose(places.frontiers, from, z);
+    goOn(joined, work);
+    return chosen(last);
+  }
   /** The way that was chosen last is driven, or not: then its place may be chosen again. */
   void end(bool drives);
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "ClassPrices.h"
-#include "MonotoneQueue.h"
 #include "RelaxedField.h"
 #include "Slices.h"
 
