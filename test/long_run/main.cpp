@@ -182,7 +182,7 @@ int run(double hours, const char* configFile, const char* orderFile, double nois
     part.print(loop.time() / 3600);
   }
   const bool isEqual = isAsMadeAnew(loop.mapper().map());
-  const bool isCopied = radio.isTheTree(loop.compressedMap());
+  const bool isCopied = radio.isTheTree(semantic_octree::Abstraction(map).compressedMap());
   const double growth = heap.back() / heap[kParts / 2 - 1];
   std::cout << "The G-values are " << (isEqual ? "" : "NOT ") << "those of the map made anew.\n"
             << "The copy, told of with " << radio.megabytes() << " MB, is "
