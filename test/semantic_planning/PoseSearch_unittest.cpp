@@ -79,3 +79,21 @@ TEST_F(PoseSearchTest, aVehicleThatOnlyDrivesForwardIsGivenNoWayBackwards) {
                     .value_or(std::vector<PathPoint>())})
     for (const PathPoint& p : path) ASSERT_TRUE(p.forward);
 }
+
+TEST_F(PoseSearchTest, aWayIntoANarrowPlaceIsFoundFromWithin) {
+  // A garage that is open in the west. In the east is a gap that is too narrow for the vehicle, but
+  // the nearest way by its wheels: from there thousands of poses lead nowhere.
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  for (const double y : {-0.8, 0.6}) world.box(-7, -2, y, y + 0.2, 0, 1, PaintedWorld::Wall);
+  for (const double y : {-0.8, 0.2}) world.box(-2, -1.8, y, y + 0.6, 0, 1, PaintedWorld::Wall);
+  const TPose2D outside(8, 0, M_PI), inside(-3, 0, 0);
+  for (const auto& [from, to] : {std::pair(outside, inside), std::pair(inside, outside)}) {
+    const auto way = wayBetween(*checker().place(from), *checker().place(to), checker(),
+                                ClassPrices(checker().order()));
+    ASSERT_GE(way.size(), 2u) << from << to;
+    PathChecker(world.map(), options.vehicle).expectDrivable(way);
+    EXPECT_NEAR(way.front().x, from.x, 1e-6);
+    EXPECT_NEAR(way.back().x, to.x, 1e-4);
+    EXPECT_NEAR(std::remainder(way.back().heading - to.phi, 2 * M_PI), 0, 1e-4);
+  }
+}
