@@ -3,12 +3,14 @@
 #include <labeled_cloud/Rawlogs.h>
 #include <labeled_cloud/ScanStream.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <zstd.h>
 
 #include <atomic>
+#include <cstring>
 #include <random>
 #include <stdexcept>
 
@@ -192,6 +194,19 @@ TEST(RawlogReader, somethingElseThanARawlogIsRefusedWithoutACallStack) {
   const auto other = writeRawlog(folder / "pose.rawlog", {pose});
   EXPECT_TRUE(
       contains(errorReadingRawlog(other), "CPose3DPDFGaussian does not belong in a rawlog"));
+}
+
+TEST(RawlogReader, aFlagThatIsNeitherZeroNorOneIsRefused) {
+  const TemporaryFolder folder;
+  auto scan = mrpt::obs::CObservation2DRangeScan::Create();
+  scan->sensorLabel = "laser";
+  for (const unsigned char byte : {0, 1, 4, 255}) {
+    std::memcpy(&scan->rightToLeft, &byte, 1);
+    const std::string error = errorReadingRawlog(writeRawlog(folder / "a.rawlog", {scan}));
+    EXPECT_EQ(byte > 1,
+              contains(error, "2DRangeScan 'laser'") && contains(error, "neither 0 nor 1"))
+        << error;
+  }
 }
 
 TEST(RawlogReader, aClassThatIsNotRegisteredIsNamed) {

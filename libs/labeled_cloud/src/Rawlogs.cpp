@@ -2,6 +2,7 @@
 
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <mrpt/io/CStream.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
@@ -24,6 +25,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "PointLabels.h"
 
 namespace labeled_cloud {
 
@@ -170,6 +173,25 @@ class CompressedInputStream : public mrpt::io::CStream {
   std::string m_damage;
 };
 
+namespace {
+
+/** MRPT reads flags as the bytes that they are. */
+bool isFlag(const bool& flag) {
+  unsigned char byte = 0;
+  std::memcpy(&byte, &flag, 1);
+  return byte <= 1;
+}
+
+bool hasFlags(const mrpt::obs::CObservation& observation) {
+  if (const auto* o = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation))
+    return isFlag(o->hasPoints3D) && isFlag(o->hasRangeImage) && isFlag(o->range_is_depth) &&
+           isFlag(o->hasIntensityImage) && isFlag(o->hasConfidenceImage);
+  const auto* o = dynamic_cast<const mrpt::obs::CObservation2DRangeScan*>(&observation);
+  return !o || isFlag(o->rightToLeft);
+}
+
+}  // namespace
+
 RawlogReader::RawlogReader(const std::filesystem::path& file)
     : m_file(file), m_stream(std::make_unique<CompressedInputStream>(file)) {
   registerObservations();
@@ -223,6 +245,8 @@ std::optional<RawlogEntry> RawlogReader::next() {
   } else {
     fail(std::string("a ") + object->GetRuntimeClass()->className + " does not belong in a rawlog");
   }
+  for (const auto& o : entry.observations)
+    if (!hasFlags(*o)) fail("a flag of " + nameOf(*o) + " is neither 0 nor 1");
   ++m_objects;
   return entry;
 }
