@@ -12,6 +12,7 @@
 #include <synthetic_world/Objects.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -103,7 +104,7 @@ class Radio : public simulated_drive::DriveObserver {
 /** A row of the table. */
 struct Part {
   int drives = 0, arrived = 0, collisions = 0;
-  double meters = 0, heap = 0;
+  double meters = 0, off = 0, heap = 0;
   std::size_t nodes = 0;
   std::vector<double> insert, replan;
 
@@ -112,6 +113,8 @@ struct Part {
     arrived += record.arrived();
     collisions += record.collisions;
     meters += record.length;
+    for (const auto& row : record.rows)
+      off = std::max(off, std::hypot(row.pose.x - row.believed.x, row.pose.y - row.believed.y));
     const auto take = [&](const char* stage, std::vector<double>& to) {
       const auto at = record.times.find(stage);
       if (at != record.times.end()) to.insert(to.end(), at->second.begin(), at->second.end());
@@ -120,8 +123,8 @@ struct Part {
     take("replan", replan);
   }
   void print(double hours) const {
-    std::printf("%7.2f %7d %8d %9d %8.0f %9.1f %9zu %7.1f %7.1f %7.1f %7.1f\n", hours, drives,
-                arrived, collisions, meters, heap, nodes, quantile(insert, 0.5),
+    std::printf("%7.2f %7d %8d %9d %8.0f %6.2f %9.1f %9zu %7.1f %7.1f %7.1f %7.1f\n", hours, drives,
+                arrived, collisions, meters, off, heap, nodes, quantile(insert, 0.5),
                 quantile(insert, 0.95), quantile(replan, 0.5), quantile(replan, 0.95));
     std::fflush(stdout);
   }
@@ -164,7 +167,8 @@ int run(double hours, const char* configFile, const char* orderFile, double nois
   Radio radio(map);
   loop.addObserver(radio);
   std::printf(
-      "  hours  drives  arrived  contacts   meters   heap MB     nodes  insert    95 %%  replan    "
+      "  hours  drives  arrived  contacts   meters  off m   heap MB     nodes  insert    95 %%  "
+      "replan    "
       "95 %%\n");
   std::vector<double> heap;
   for (int i = 1, drives = 0; i <= kParts; ++i) {
