@@ -44,7 +44,7 @@ class OccupiedVoxels {
       return x == o.x && y == o.y && z == o.z && classId == o.classId;
     }
   };
-  /** Those of 64 x 64 x 64 voxels, by tile. */
+  /** Voxels of a cube of 64 x 64 x 64, by tile. */
   using Block = std::map<std::uint64_t, std::vector<Voxel>>;
 
   /** \param map must outlive it */

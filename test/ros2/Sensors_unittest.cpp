@@ -71,6 +71,31 @@ TEST_F(LiveSensors, laserScansAndOdometry) {
   EXPECT_EQ(map.query(11, 0.05, 0.5).status, CellState::Status::Free);
 }
 
+TEST_F(LiveSensors, beamsOfALaserThatTakeTimeAreSeenFromWhereTheRobotIsByThen) {
+  start({"-p", "map_frame:=odom"});
+  const std::string odom = "odom", base = "base_link";
+  ros2::Publication<ros2::Odometry> odometry(live->node(), "odom", {});
+  ros2::Publication<ros2::LaserScan> scans(live->node(), "scan", {true, false, 5});
+  ros2::LaserScan scan{};
+  scan.angle_increment = float(M_PI / 8), scan.time_increment = 0.125f;
+  scan.range_min = 0.1f, scan.range_max = 20;
+  std::vector<float> ranges = {2, 2, 2, 2, 3.1f};
+  ros2::refer(scan.ranges, ranges);
+  for (int second : {5, 6}) {  // at 1 m/s along x
+    ros2::Odometry pose{};
+    pose.header = ros2::headerOf(second * kSecond, odom);
+    pose.child_frame_id = ros2::textOf(base);
+    pose.pose.pose.position.x = second;
+    pose.pose.pose.orientation.w = 1;
+    live->send(odometry, pose);
+    scan.header = ros2::headerOf(second * kSecond, base);
+    live->send(scans, scan);
+  }
+  ASSERT_TRUE(live->waitForScans(2)) << live->said();
+  EXPECT_EQ(end(6.5, 3.1, 0.1).status, CellState::Status::Occupied);
+  EXPECT_NE(live->map().query(6.1, 3.1, 0.1).status, CellState::Status::Occupied);
+}
+
 TEST_F(LiveSensors, depthAndLabelImages) {
   start();
   const std::string frame = "optical", depthEncoding = "32FC1", labelEncoding = "mono16";

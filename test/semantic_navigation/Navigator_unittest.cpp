@@ -202,6 +202,30 @@ TEST(Navigator, HasAScanInTheMapWhenItsLatencyIsOver) {
   }
 }
 
+TEST(Navigator, InsertsPointsThatHaveTimesAsIfTheyHadBeenSeenAtOnce) {
+  for (const double latency : {0.0, 0.3}) {
+    semantic_octree::SemanticOcTree map(0.2, synthetic_world::classTable());
+    semantic_slam::Mapper mapper(map, {});
+    Navigator navigator(mapper, colored_graph::ClassOrder(map.numClasses() + 1, {{1}, {0}}),
+                        someOptions(latency));
+    for (const double seconds : {0.0, 1.0}) {  // at 1 m/s along x
+      RobotState robot;
+      robot.drive.pose.x = seconds;
+      robot.T_odometry_robot = Eigen::Translation3d(seconds, 0, 0);
+      navigator.update(robot);
+      SensorScan scan{{}, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.5))};
+      scan.cloud.points = {{5, 0.1f, 0}};
+      scan.cloud.classes = {synthetic_world::kRoad};
+      scan.times = {0.4f};
+      navigator.see({scan}, seconds);
+      navigator.step(seconds + 0.5);
+    }
+    using Cell = semantic_octree::CellState::Status;
+    EXPECT_EQ(map.query(6.5, 0.1, 1.5).status, Cell::Occupied) << latency;
+    EXPECT_EQ(map.query(6.1, 0.1, 1.5).status, Cell::Free) << latency;
+  }
+}
+
 /** As if the map were not asked while a thread fills it: it may be filled at once, or late. */
 TEST(Navigator, DoesWhatItDoesHoweverLongTheMapTakes) {
   Robot quick(someOptions(0.3)), slow(someOptions(0.3));

@@ -159,8 +159,8 @@ class HighestCells {
   /** A pixel per column in its class's color, paper where there is nothing; the first row is that
    * of the largest y. */
   cv::Mat inColors(const semantic_types::ClassTable& classes) const;
-  /** The same, shaded as maps are, coarse cells hatched: there is something of that class in them,
-   * but they are not full of it. */
+  /** A pixel per column, shaded as maps are, coarse cells hatched: there is something of that class
+   * in them, but they are not full of it. */
   cv::Mat inRelief(const semantic_types::ClassTable& classes) const;
   bool showsCoarseCells() const { return cv::countNonZero(m_coarse) > 0; }
 

@@ -382,7 +382,7 @@ ObstaclePoints Navigator::knownRoom(double radius) const {
   return senseObstacles(m_planner, m_state.pose, m_z, options);
 }
 
-/** The same; while a scan is inserted, as it was known before. */
+/** What is in the way around the robot; while a scan is inserted, as it was known before. */
 ObstaclePoints Navigator::obstacles() const {
   const double radius = m_options.obstacleRadius();
   return isInserting() ? seenFrom(m_before, m_beforeAt, m_state.pose, radius)

@@ -28,12 +28,12 @@ auto Mapper::locate(const std::vector<SensorScan>& seen,
   if (!m_slam && !T_odometry_robot)
     throw std::invalid_argument("Mapper: scans without a pose of odometry need localize");
   if (!m_slam) {
-    Place place{*T_odometry_robot, {}};
-    if (m_last && seconds > m_last->second)
-      place.velocity =
-          velocityOf(m_last->first.inverse() * place.T_map_robot, seconds - m_last->second);
-    m_last = {place.T_map_robot, seconds};
-    return place;
+    const double passed = m_last ? seconds - m_last->second : 0;
+    if (passed >= kLeastTimeOfVelocity)
+      m_velocity = velocityOf(m_last->first.inverse() * *T_odometry_robot, passed);
+    if (!m_last || passed < 0 || passed >= kLeastTimeOfVelocity)
+      m_last = {*T_odometry_robot, seconds};
+    return {*T_odometry_robot, {}, m_velocity};
   }
   std::optional<Eigen::Isometry3d> T_start_robot;
   if (T_odometry_robot) T_start_robot = m_T_start_odometry * *T_odometry_robot;

@@ -30,7 +30,7 @@ struct SensorScale {
   static SensorScale of(const LabeledCloud& cloud, bool isPlanar);
 };
 
-/** Of the same points, one for each edge of cubes (m). */
+/** A submap of the cloud for each edge of cubes (m). */
 std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells,
                               bool useClasses, bool isPlanar, double deviation = 0);
 

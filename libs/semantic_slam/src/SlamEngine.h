@@ -168,6 +168,8 @@ class SlamEngine {
   Pose m_T_standing = Pose::Identity();        ///< by scans, since odometry moved
   double m_lastSeconds = 0;                    ///< when
   Vector6 m_velocity = Vector6::Zero();        ///< then, robot's frame
+  double m_unmeasured = 0;                     ///< s since the velocity was measured
+  Pose m_T_unmeasured = Pose::Identity();      ///< and how the robot moved meanwhile
   SensorScan m_first;                          ///< until its velocity is known, if it has times
   int m_lostInRow = 0;                         ///< scans since then
   int m_stepScans = 1;                         ///< scans from the registration before to the last

@@ -79,9 +79,10 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
   if (m_keyframes.empty())
     m_noise = MotionNoise(!m_hasOdometry, m_hasOdometry && !m_scale.isPlanar ? kInSpace : 1);
   const std::size_t last = m_keyframes.size() - 1;
-  const double passed = m_keyframes.empty() ? 0 : seconds - m_lastSeconds;
+  const double passed = m_keyframes.empty() ? 0 : std::max(0.0, seconds - m_lastSeconds);
+  const bool isMeasured = m_unmeasured + passed >= kLeastTimeOfVelocity;
   const auto velocityBy = [&](const Pose& T) {
-    return passed > 0 ? velocityOf(T, passed) : m_velocity;
+    return isMeasured ? velocityOf(m_T_unmeasured * T, m_unmeasured + passed) : m_velocity;
   };
   if (!m_hasOdometry && !scan.times.empty()) m_T_step = movedFor(passed, m_velocity);
   const Pose T_step = predictedStep(T_odometry_robot), T_guess = m_T_keyframe_last * T_step;
@@ -98,7 +99,8 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
   }
 
   auto registered = track(now, T_step);
-  if (registered && !m_first.times.empty()) {  // alike skewed, they tell how fast the robot is
+  if (registered && isMeasured &&
+      !m_first.times.empty()) {  // alike skewed, they tell how fast the robot is
     straightenFirst(velocityBy(m_T_keyframe_last.inverse() * registered->T_submap_scan));
     now = seenIn(scan, middle, m_velocity, T_odometry);
     registered = track(now, T_step);
@@ -109,6 +111,8 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
   noteStanding(T_moved);
   registered ? noteFound(T_step, T_last_robot, *registered) : noteLost(T_step);
   m_velocity = velocityBy(m_T_step);
+  m_unmeasured = isMeasured ? 0 : m_unmeasured + passed;
+  m_T_unmeasured = isMeasured ? Pose::Identity() : m_T_unmeasured * m_T_step;
   m_T_keyframe_last = T_last_robot;
   m_T_odometry_last = T_odometry;
   m_stepScans = 1 + m_numSmall;

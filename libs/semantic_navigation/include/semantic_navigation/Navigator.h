@@ -87,7 +87,7 @@ class Navigator {
   void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights) {
     explore(weights, m_options.explore);
   }
-  /** The same, with other options from now on. */
+  /** Explores with other options from now on. */
   void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights,
                const semantic_driving::ExploreOptions& options);
   /** Exploring is over, if it was not. */

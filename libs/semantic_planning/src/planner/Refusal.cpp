@@ -26,8 +26,8 @@ std::string forbidden(const Ground& ground, ClassId id) {
   return "ground of " + named(ground, id) + ", which the order forbids";
 }
 
-/** Of a class that the vehicle may drive on nothing stands up: the label was wrong, or it is what
- * somebody who passed has left in the map. \param voxels above the ground */
+/** What stands in the way. A class that the vehicle may drive on does not stand up: the label was
+ * wrong, or somebody who passed has left it in the map. \param voxels above the ground */
 std::string standing(const CollisionChecker& checker, ClassId id, int voxels) {
   const std::string name = named(checker.ground(), id);
   if (id == semantic_types::kNoClass || checker.order().rank(id) == colored_graph::kForbidden)

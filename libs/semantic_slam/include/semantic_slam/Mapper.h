@@ -125,8 +125,9 @@ class Mapper {
   Eigen::Isometry3d m_T_map_odometry = Eigen::Isometry3d::Identity();
   /** What Slam takes for odometry's frame. */
   Eigen::Isometry3d m_T_start_odometry = Eigen::Isometry3d::Identity();
-  /** Without `localize`: where odometry had the last scan, and when. */
+  /** Without `localize`: where odometry had the robot, and when; and how fast it was since then. */
   std::optional<std::pair<Eigen::Isometry3d, double>> m_last;
+  Vector6 m_velocity = Vector6::Zero();
   int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_octree::Calibrator m_calibrator;
   std::size_t m_numScans = 0, m_calibrateAt = 4;
