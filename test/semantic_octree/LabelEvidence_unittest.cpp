@@ -24,14 +24,6 @@ double evidenceOfTheUrn(double accuracy, int K, double correlation, int n) {
 
 }  // namespace
 
-TEST(LabelEvidence, ofTheFirstLabelIsThatOfAHardLabelWhateverTheCorrelation) {
-  for (const double correlation : {0.0, 1e-6, 0.2, 0.5, 1.0}) {
-    const LabelEvidence evidence(0.9, 24, correlation);
-    EXPECT_EQ(evidence(0), 0);
-    EXPECT_NEAR(evidence(1), std::log(0.9 / (0.1 / 23)), 1e-12);
-  }
-}
-
 TEST(LabelEvidence, ofRandomLabelsIsThatOfPolyasUrnInAnyOrder) {
   std::mt19937 random(1);
   const auto between = [&](double a, double b) {
@@ -71,16 +63,6 @@ TEST(LabelEvidence, isCountingWithoutCorrelationAndOneLabelWithAllOfIt) {
     EXPECT_NEAR(counting(n) / counting(1), n, 0.003) << n;
     EXPECT_NEAR(one(n), one(1), 1e-9) << n;
   }
-}
-
-TEST(LabelEvidence, growsWithLabelsAndLessWithCorrelation) {
-  for (const double r : {0.01, 0.2, 0.5, 0.9})
-    for (std::uint32_t n = 1; n < 500; ++n) {
-      const LabelEvidence evidence(0.7, 10, r);
-      EXPECT_GT(evidence(n + 1), evidence(n));
-      EXPECT_LE(evidence(n + 1) - evidence(n), evidence(n) - evidence(n - 1) + 1e-7);
-      EXPECT_GT(evidence(n + 1), LabelEvidence(0.7, 10, r + 0.05)(n + 1));
-    }
 }
 
 TEST(LabelEvidence, ofManyLabelsGoesOnWhereTheSumOfFewEnds) {

@@ -111,53 +111,6 @@ void askAboutPatches(std::mt19937& random, Answers& sum) {
 
 }  // namespace
 
-TEST(Votes, ofOneLabelAreTheHardLabelToTheLastBit) {
-  for (const double accuracy : {0.3, 0.7, 0.9, 0.999}) {
-    const ClassFilter<float> filter(24, wideLimits(accuracy));
-    ClassBelief<float> voted = filter.uniform(0.3f), labeled = voted;
-    hit(filter, voted, {{7, 1}});
-    filter.hit(labeled, 7);
-    EXPECT_TRUE(voted == labeled);
-  }
-}
-
-TEST(Votes, areTheRowOfTheirCounts) {
-  constexpr int K = 5;
-  FilterParameters p = wideLimits(0.8);
-  p.labelCorrelation = 0.2;  // 3.2 and 0.2 are the Dirichlet's parameters
-  const ClassFilter<double> filter(K, p);
-  const ClassBelief<double> uniform = filter.uniform(0), b = after(filter, {{2, 3}, {4, 1}});
-  const double one = 3.2 / 0.2, three = one * (4.2 / 1.2) * (5.2 / 2.2);
-  const double base = uniform.rest + std::log(p.hitProbability / p.falseAlarmProbability);
-  const auto expected = [&](double odds) { return base + std::log(K * odds / (three + one + 3)); };
-  EXPECT_NEAR(b.logOddsOf(2), expected(three), 1e-12);
-  EXPECT_NEAR(b.logOddsOf(4), expected(one), 1e-12);
-  EXPECT_NEAR(b.rest, expected(1), 1e-12);
-}
-
-TEST(Votes, ofLabelsThatAgreeSayMoreThanOneAndLessThanAsManyScans) {
-  const ClassFilter<double> filter(24, wideLimits(0.8));
-  const auto margin = [](const ClassBelief<double>& b) { return b.logOdds[0] - b.rest; };
-  const ClassBelief<double> once = after(filter, {{7, 1}});
-  ClassBelief<double> threeScans = once;
-  for (int i = 0; i < 2; ++i) filter.hit(threeScans, 7);
-  EXPECT_GT(margin(after(filter, {{7, 3}})), margin(once));
-  EXPECT_LT(margin(after(filter, {{7, 3}})), margin(threeScans));
-}
-
-TEST(Votes, withoutCorrelationAreAsManyScansWithoutTheirOccupancy) {
-  FilterParameters p = wideLimits(0.8);
-  p.labelCorrelation = 0, p.minOccupancy = 1e-9, p.maxProbability = 1 - 1e-9;
-  const ClassFilter<double> filter(24, p);
-  const ClassBelief<double> voted = after(filter, {{3, 2}, {7, 1}});
-  ClassBelief<double> scans = filter.uniform(0);
-  for (const ClassId id : {3, 7, 3}) filter.hit(scans, id);
-  for (const ClassId id : {3, 7})
-    EXPECT_NEAR(voted.logOddsOf(id) - voted.rest, scans.logOddsOf(id) - scans.rest, 1e-6);
-  const double once = std::log(p.hitProbability / p.falseAlarmProbability);
-  EXPECT_NEAR(voted.occupancyLogOdds(24), once, 1e-9);
-}
-
 TEST(Votes, thatTieLeaveTheChoiceToTheNextScan) {
   const ClassFilter<float> filter(24, wideLimits(0.9));
   ClassBelief<float> b = after(filter, {{3, 2}, {9, 2}});
@@ -282,20 +235,6 @@ void expectExactFilter(int K, ExactFilter::Grid grid, std::mt19937& random) {
 
 }  // namespace
 
-TEST(SoftLabel, thatIsTheClassifiersRowEqualsTheHardLabel) {
-  constexpr int K = 24;
-  const FilterParameters p = wideLimits(0.8);
-  const ClassFilter<double> filter(K, p);
-  std::vector<float> row(K, static_cast<float>(0.2 / 23));
-  row[6] = 0.8f;
-  ClassBelief<double> soft = filter.uniform(0.3), hard = soft;
-  filter.hit(soft, row.data());
-  filter.hit(hard, 7);
-  for (int k = 1; k <= K; ++k)
-    EXPECT_NEAR(soft.logOddsOf(static_cast<ClassId>(k)), hard.logOddsOf(static_cast<ClassId>(k)),
-                1e-6);
-}
-
 TEST(SoftLabel, thatIsTheFirstOfACellMeetsThePriorAndLaterOnesDoNot) {
   constexpr int K = 3;
   FilterParameters p = wideLimits();
@@ -313,35 +252,6 @@ TEST(SoftLabel, thatIsTheFirstOfACellMeetsThePriorAndLaterOnesDoNot) {
           plain.logOddsOf(k) - plain.logOddsOf(1) + std::log(p.classPrior[k - 1] / p.classPrior[0]),
           1e-6);
   }
-}
-
-TEST(SoftLabel, oneHotApproachesTheHardLabelOfAPerfectClassifier) {
-  constexpr int K = 5;
-  for (const double floor : {0.01, 0.001, 0.0001}) {
-    FilterParameters p = wideLimits(1 - (K - 1) * floor);
-    p.softLabelFloor = floor;
-    const ClassFilter<double> filter(K, p);
-    const std::vector<float> oneHot{0, 0, 1, 0, 0};
-    ClassBelief<double> soft = filter.uniform(0), hard = soft;
-    filter.hit(soft, oneHot.data());
-    filter.hit(hard, 3);
-    EXPECT_LT(totalVariation(distributionOf(soft, K), distributionOf(hard, K)), K * floor);
-    EXPECT_EQ(soft.ids[0], 3);
-  }
-}
-
-TEST(SoftLabel, thatIsUniformEqualsAnUnlabeledHit) {
-  constexpr int K = 4;
-  const ClassFilter<double> filter(K, wideLimits());
-  const std::vector<float> uniform(K, 0.25f);
-  ClassBelief<double> soft = filter.uniform(-0.5);
-  filter.hit(soft, 2);
-  ClassBelief<double> unlabeled = soft;
-  filter.hit(soft, uniform.data());
-  filter.hit(unlabeled);
-  for (int k = 1; k <= K; ++k)
-    EXPECT_NEAR(soft.logOddsOf(static_cast<ClassId>(k)),
-                unlabeled.logOddsOf(static_cast<ClassId>(k)), 1e-12);
 }
 
 TEST(SoftLabel, ofUpToThreeClassesEqualsTheExactFilter) {
