@@ -102,9 +102,9 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
 
 ExploreTask exploreTask(const Cli& cli) {
   ExploreTask task;
-  task.weights.terms = semantic_octree::loadWeights(cli.weights, synthetic_world::classTable())
-                           .solution(cli.solution)
-                           .terms;
+  task.weights =
+      semantic_octree::loadSolution(cli.weights, cli.solution, synthetic_world::classTable())
+          .weights;
   for (const auto& term : task.weights.terms)
     for (const auto& group : term.groups)
       for (const int id : group)

@@ -1,6 +1,7 @@
 // The paper's planning experiment: the same random tasks for graphs of the compressed tree and for
 // Halton graphs, with equal numbers of vertices and edges.
 #include <map_folders/MapFolder.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <strict_files/OutputFiles.h>
@@ -176,7 +177,7 @@ int run(const Cli& cli) {
   cli.outputs.check({cli.output});
   SemanticOcTree map = semantic_octree::loadMap(cli.map);
   const auto order = loadClassOrder(cli.order, map.classes());
-  setAbstraction(map, abstractionOf(cli.weights, cli.solution, map.classes()));
+  setAbstraction(map, semantic_octree::loadSolution(cli.weights, cli.solution, map.classes()));
   std::vector<SemanticPlanner> planners = plannersOf(cli, map, order);
   const auto instances = drawInstances(planners[0], cli);
   std::ostringstream csv;

@@ -19,27 +19,28 @@ using tree_abstraction::AbstractionWeights;
 
 namespace {
 
-[[noreturn]] void refuse(const Solution& solution, const std::string& what) {
+[[noreturn]] void refuse(const AbstractionOptions& solution, const std::string& what) {
   throw std::runtime_error("solution '" + solution.name + "': " + what);
 }
 
 }  // namespace
 
-Compressor::Compressor(SemanticOcTree& map, const TermCatalog& catalog,
-                       semantic_octree::AbstractionOptions space, CompressedPlace place)
-    : m_map(map), m_catalog(catalog), m_options(std::move(space)), m_place(std::move(place)) {
+Compressor::Compressor(SemanticOcTree& map, const TermCatalog& catalog, AbstractionOptions ofAll,
+                       CompressedPlace place)
+    : m_map(map), m_catalog(catalog), m_options(std::move(ofAll)), m_place(std::move(place)) {
   if (map.empty()) throw std::invalid_argument("the map is empty");
   useBatch(0);
 }
 
 void Compressor::useBatch(std::size_t b) {
   m_batch = b;
+  m_options.weights.alpha = tree_abstraction::kAlpha;  // until a solution is weighed
   m_options.weights.terms = m_catalog.terms(b);
   dropAbstraction(m_map);
   setAbstraction(m_map, m_options);
 }
 
-void Compressor::weigh(const Solution& solution, double alpha) {
+void Compressor::weigh(const AbstractionOptions& solution, double alpha) {
   abstraction().setWeights(m_catalog.weights(solution, m_batch), alpha);
 }
 
@@ -52,7 +53,7 @@ void Compressor::addKept(const AbstractionMeasures& measures,
                       measures.retention(i)};
 }
 
-double Compressor::alphaFor(const Solution& solution, const Target& target) {
+double Compressor::alphaFor(const AbstractionOptions& solution, const Target& target) {
   if (target.leaves) return alphaForLeaves(solution, *target.leaves);
   if (target.share) {
     weigh(solution, 0);
@@ -61,12 +62,12 @@ double Compressor::alphaFor(const Solution& solution, const Target& target) {
   }
   if (target.bytes) return alphaForBytes(solution, *target.bytes);
   if (target.alpha) return *target.alpha;
-  if (!solution.alpha)
+  if (std::isnan(solution.weights.alpha))
     refuse(solution, "no alpha: expected `alpha`, --alpha, --leaves (such as 10%) or --bytes");
-  return *solution.alpha;
+  return solution.weights.alpha;
 }
 
-double Compressor::alphaForLeaves(const Solution& solution, std::size_t wanted) {
+double Compressor::alphaForLeaves(const AbstractionOptions& solution, std::size_t wanted) {
   weigh(solution, 0);
   const Abstraction present = abstraction();
   try {
@@ -76,7 +77,7 @@ double Compressor::alphaForLeaves(const Solution& solution, std::size_t wanted) 
   }
 }
 
-double Compressor::alphaForBytes(const Solution& solution, std::size_t wanted) {
+double Compressor::alphaForBytes(const AbstractionOptions& solution, std::size_t wanted) {
   weigh(solution, 0);
   const Abstraction present = abstraction();
   const AlphaTrees trees(present);

@@ -11,7 +11,7 @@
 
 namespace semantic_map_compress {
 
-using semantic_octree::Solution;
+using semantic_octree::AbstractionOptions;
 using semantic_octree::TermCatalog;
 
 /** How small compressed maps are to be; at most one is set. None: each solution's own alpha. */
@@ -39,20 +39,21 @@ struct CompressedPlace {
 /** The compressed trees of one map for different weights. */
 class Compressor {
  public:
-  /** The map keeps G-values from now on. \throw std::invalid_argument the map is empty. */
+  /** The map keeps G-values from now on. \param ofAll what all solutions have in common \throw
+   * std::invalid_argument the map is empty. */
   Compressor(semantic_octree::SemanticOcTree& map, const TermCatalog& catalog,
-             semantic_octree::AbstractionOptions space, CompressedPlace place);
+             AbstractionOptions ofAll, CompressedPlace place);
 
   std::size_t numBatches() const { return m_catalog.numBatches(); }
   /** Computes the information of this batch's terms in all nodes. */
   void useBatch(std::size_t b);
 
   /** The compressed tree is that of these weights from now on. */
-  void weigh(const Solution& solution, double alpha);
+  void weigh(const AbstractionOptions& solution, double alpha);
   /** Alpha of the largest compressed tree within the target. For bytes: the next larger one
    * does not fit. \throw std::runtime_error naming the solution: no alpha is given, or no tree is
    * that small, or more leaves are wanted than there are. */
-  double alphaFor(const Solution& solution, const Target& target);
+  double alphaFor(const AbstractionOptions& solution, const Target& target);
 
   semantic_octree::Abstraction abstraction() { return semantic_octree::Abstraction(m_map); }
   /** Adds what the measures say about the present batch's terms; one entry a term of the catalog.
@@ -61,12 +62,12 @@ class Compressor {
                std::vector<KeptInformation>& kept) const;
 
  private:
-  double alphaForLeaves(const Solution& solution, std::size_t wanted);
-  double alphaForBytes(const Solution& solution, std::size_t wanted);
+  double alphaForLeaves(const AbstractionOptions& solution, std::size_t wanted);
+  double alphaForBytes(const AbstractionOptions& solution, std::size_t wanted);
 
   semantic_octree::SemanticOcTree& m_map;
   const TermCatalog& m_catalog;
-  semantic_octree::AbstractionOptions m_options;
+  AbstractionOptions m_options;
   CompressedPlace m_place;
   std::size_t m_batch = 0;
   friend class Compressed;
@@ -126,7 +127,7 @@ struct FullMap {
 
 /** What came of a solution. */
 struct Compression {
-  Solution solution;
+  AbstractionOptions solution;
   double alpha = 0;
   semantic_octree::AbstractionMeasures measures;
   /** What is kept of each term of the catalog. */

@@ -182,7 +182,6 @@ void drawCurves(const std::vector<Compression>& compressions, const std::filesys
 }
 
 using nlohmann::ordered_json;
-using semantic_octree::AbstractionOptions;
 using strict_files::csvField;
 using tree_abstraction::natsToBits;
 using tree_abstraction::TreeMeasures;
@@ -205,11 +204,14 @@ ordered_json toJson(const TreeMeasures& tree) {
           {"leafEntropy", natsToBits(tree.leafEntropy)}};
 }
 
-ordered_json toJson(AbstractionOptions space) {
+/** What a solution has in common with all others. */
+ordered_json spaceJson(AbstractionOptions solution) {
   strict_files::OptionList options;
-  space.describe(options);
+  solution.describe(options);
+  for (const char* name : {"relevant", "irrelevant", "everything", "alpha", "regions"})
+    options.remove(name);
   ordered_json json = jsonOf(options);
-  json["regions"] = space.regions.size();
+  json["regions"] = solution.regions.size();
   return json;
 }
 
@@ -235,7 +237,7 @@ ordered_json curveJson(const std::vector<CurvePoint>& curve) {
 
 ordered_json toJson(const Compression& c, const TermCatalog& catalog) {
   ordered_json weights = ordered_json::object();
-  for (const auto& term : c.solution.terms) weights[term.name] = term.weight;
+  for (const auto& term : c.solution.weights.terms) weights[term.name] = term.weight;
   const std::size_t numClasses = catalog.numClasses() + 1;
   return {{"name", c.solution.name},
           {"weights", weights},
@@ -252,7 +254,7 @@ ordered_json toJson(const Compression& c, const TermCatalog& catalog) {
 
 }  // namespace
 
-ordered_json toJson(const FullMap& map, const TermCatalog& catalog, const AbstractionOptions& space,
+ordered_json toJson(const FullMap& map, const TermCatalog& catalog,
                     const std::vector<Compression>& compressions, const StageTimer& times) {
   ordered_json voxels = ordered_json::object();
   for (std::size_t id = 1; id < map.voxelsOfClass.size(); ++id)
@@ -267,7 +269,7 @@ ordered_json toJson(const FullMap& map, const TermCatalog& catalog, const Abstra
             {"fileBytes", map.bytes},
             {"voxelsPerClass", voxels},
             {"tree", toJson(compressions.front().measures.full)}}},
-          {"space", toJson(space)},
+          {"space", spaceJson(compressions.front().solution)},
           {"solutions", solutions},
           {"milliseconds", toJson(times)}};
 }

@@ -46,7 +46,6 @@ void drawCurves(const std::vector<Compression>& compressions, const std::filesys
 
 /** Everything about all solutions, informations in bits. */
 nlohmann::ordered_json toJson(const FullMap& map, const TermCatalog& catalog,
-                              const semantic_octree::AbstractionOptions& space,
                               const std::vector<Compression>& compressions,
                               const StageTimer& times);
 

@@ -6,6 +6,7 @@
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
+#include <cmath>
 #include <iomanip>
 #include <optional>
 #include <ostream>
@@ -24,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using semantic_octree::SemanticOcTree;
-using semantic_octree::WeightsFile;
 using strict_files::OutputFolder;
 
 struct Cli {
@@ -82,8 +82,10 @@ Target targetOf(const Cli& cli) {
   return target;
 }
 
-WeightsFile weightsOf(const Cli& cli, const semantic_types::ClassTable& classes) {
-  if (!cli.weights.empty()) return semantic_octree::loadWeights(cli.weights, classes);
+/** Alpha is NaN where nothing says it. */
+std::vector<AbstractionOptions> solutionsOf(const Cli& cli,
+                                            const semantic_types::ClassTable& classes) {
+  if (!cli.weights.empty()) return semantic_octree::loadWeights(cli.weights, classes, NAN);
   return semantic_octree::weightsOfText("{name: all-classes, everything: 1}", "without --weights",
                                         classes);
 }
@@ -95,7 +97,7 @@ class SolutionWriter {
                  MapSheet& sheet)
       : m_compressor(compressor), m_target(target), m_output(output), m_sheet(sheet) {}
 
-  Compression write(const Solution& solution) const {
+  Compression write(const AbstractionOptions& solution) const {
     Compression c;
     c.solution = solution;
     c.alpha = m_compressor.alphaFor(solution, m_target);
@@ -160,10 +162,10 @@ std::string drawFigures(const FullMap& map, const std::vector<Compression>& comp
   }
 }
 
-std::vector<std::string> fileNames(const std::vector<Solution>& solutions) {
+std::vector<std::string> fileNames(const std::vector<AbstractionOptions>& solutions) {
   std::vector<std::string> names = {"report.json", "report.csv", "maps.png", "retained.png",
                                     "curves.png"};
-  for (const Solution& solution : solutions)
+  for (const AbstractionOptions& solution : solutions)
     for (const char* ending : {".semantic", ".top.png"}) names.push_back(solution.name + ending);
   return names;
 }
@@ -184,25 +186,24 @@ int run(const Cli& cli) {
   const FullMap full{cli.map.string(), map.getResolution(), map.size(),
                      stored->folder() ? stored->bytesOnDisk() : fs::file_size(cli.map),
                      contentsOf(map).voxelsOfClass};
-  const WeightsFile weights = weightsOf(cli, map.classes());
-  cli.outputs.checkFolder(cli.output, fileNames(weights.solutions));
+  const std::vector<AbstractionOptions> solutions = solutionsOf(cli, map.classes());
+  cli.outputs.checkFolder(cli.output, fileNames(solutions));
   times.add("load");
-  const TermCatalog catalog(map.classes(), weights.solutions);
+  const TermCatalog catalog(map.classes(), solutions);
   OutputFolder output(cli.output);
   CompressedPlace place;
   if (stored->folder()) place.tiles = {memory, stored->folder()->contents().tileSize};
   place.scratch = output.staged("tiles");
-  const std::size_t numSolutions = weights.solutions.size();
   std::optional<Progress> progress(std::in_place, "Compressing",
-                                   numSolutions + 2 * catalog.numBatches());
+                                   solutions.size() + 2 * catalog.numBatches());
   progress->update(0, "information of the classes");
-  Compressor compressor(map, catalog, weights.space, place);
+  Compressor compressor(map, catalog, solutions.front(), place);
   times.add("computeInformation");
 
-  MapSheet sheet(1 + weights.solutions.size());
+  MapSheet sheet(1 + solutions.size());
   sheet.add(map, "full map: " + std::to_string(map.getNumLeafNodes()) + " leaves");
   std::vector<Compression> compressions;
-  for (const Solution& solution : weights.solutions) {
+  for (const AbstractionOptions& solution : solutions) {
     progress->update(2 + compressions.size(), solution.name);
     compressions.push_back(
         SolutionWriter(compressor, targetOf(cli), output, sheet).write(solution));
@@ -216,9 +217,8 @@ int run(const Cli& cli) {
   const std::string problem = drawFigures(full, compressions, catalog, output);
   times.add("figures");
   strict_files::writeText(output.staged("report.csv"), toCsv(catalog, compressions));
-  writeJson(output.staged("report.json"),
-            toJson(full, catalog, weights.space, compressions, times));
-  output.commit(fileNames(weights.solutions));
+  writeJson(output.staged("report.json"), toJson(full, catalog, compressions, times));
+  output.commit(fileNames(solutions));
   printSummary(compressions);
   if (!problem.empty()) throw std::runtime_error(problem);
   return 0;

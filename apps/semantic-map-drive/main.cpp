@@ -298,11 +298,8 @@ class DriveProgram {
   static mrpt::math::TPose2D goalOf(const Cli& cli) { return cli.explore ? cli.start : cli.goal; }
   static std::optional<tree_abstraction::AbstractionWeights> weightsOf(const Cli& cli) {
     if (cli.weights.empty()) return {};
-    tree_abstraction::AbstractionWeights weights;
-    weights.terms = semantic_octree::loadWeights(cli.weights, synthetic_world::classTable())
-                        .solution(cli.solution)
-                        .terms;
-    return weights;
+    return semantic_octree::loadSolution(cli.weights, cli.solution, synthetic_world::classTable())
+        .weights;
   }
   static const Cli& checked(const Cli& cli) {
     std::vector<std::string> names = kFiles;

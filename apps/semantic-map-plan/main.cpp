@@ -2,6 +2,7 @@
 #include <map_folders/MapFolder.h>
 #include <map_pictures/MapCanvas.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
@@ -150,9 +151,9 @@ int run(Cli& cli) {
   const bool mayHaveGraph = !cli.planner.shorten || cli.planner.strict;
   const bool hasGraph = mayHaveGraph && isOfTree(cli.planner.roadmap.kind);
   if (hasGraph || !cli.weights.empty())
-    setAbstraction(map, cli.weights.empty()
-                            ? abstractionFor(order)
-                            : abstractionOf(cli.weights, cli.solution, map.classes()));
+    setAbstraction(map, cli.weights.empty() ? abstractionFor(order)
+                                            : semantic_octree::loadSolution(
+                                                  cli.weights, cli.solution, map.classes()));
   const double abstraction = watch.lap();
   SemanticPlanner planner(map, order, cli.planner, corridor);
   const double ground = watch.lap();

@@ -154,7 +154,7 @@ semantic_octree::SemanticOcTree Parameters::newMap() const {
 }
 
 void Parameters::abstract(semantic_octree::SemanticOcTree& tree) const {
-  if (abstraction.isSet()) setAbstraction(tree, abstraction.forClasses(tree.classes()));
+  if (abstraction.isSet()) setAbstraction(tree, abstraction);
 }
 
 Parameters readParameters(const std::vector<fs::path>& files,

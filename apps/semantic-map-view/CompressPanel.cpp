@@ -55,11 +55,10 @@ void CompressPanel::begin() {
     constexpr double kBlock = 16;  // voxels
     semantic_octree::AbstractionOptions space;
     space.blockSize = kBlock * map.getResolution();
-    m_live.emplace(map, LiveCompression::allClasses(map), space);
+    m_live.emplace(map, LiveCompression::allClasses(map, space));
     m_live->setLeaves(map.getNumLeafNodes() / kShare);
   } else {
-    const auto file = semantic_octree::loadWeights(m_weights, map.classes());
-    m_live.emplace(map, file.solutions.front(), file.space);
+    m_live.emplace(map, semantic_octree::loadWeights(m_weights, map.classes()).front());
   }
   tell(0);
 }
@@ -231,8 +230,8 @@ void CompressPanel::tell(std::size_t bytes) {
 
 fs::path CompressPanel::save(const fs::path& folder) const {
   const fs::path file = m_viewer.newFile(folder, "weights", ".yaml");
-  strict_files::writeText(file, map_view::weightsText(m_live->solution(), m_live->space(),
-                                                      m_viewer.layer().map().classes()));
+  strict_files::writeText(
+      file, map_view::weightsText(m_live->solution(), m_viewer.layer().map().classes()));
   return file;
 }
 

@@ -152,8 +152,7 @@ TEST(MapStreamFaults, nothingStaysOfADescriptionThatFailed) {
   coder.fromText(codingWith(record, K, 10));
   TreePart part;
   part.cell = {0777, 10};
-  part.leaves[0].kind = StreamLeaf::Kind::WithRecord;
-  part.leaves[0].record = record;
+  part.leaves[0] = LeafContent{0, record};
   accept(1, coder.encode({&part}));
   accept(2, "x");
   EXPECT_EQ(errorOf([&] { accept(0, descriptionOf(K, K, 10)); }), "altered: it ends too early");

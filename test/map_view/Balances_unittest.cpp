@@ -104,7 +104,7 @@ TEST(Balances, AreThoseOfTheDefinitionsTermByTerm) {
   SemanticOcTree map = randomMap(61);
   semantic_octree::AbstractionOptions space;
   space.blockSize = kBlock;
-  LiveCompression live(map, LiveCompression::allClasses(map), space);
+  LiveCompression live(map, LiveCompression::allClasses(map, space));
   for (std::size_t t = 0; t < live.numTerms(); ++t) live.setWeight(t, 0.3 + 0.4 * double(t));
   const Definition expected(map, live);
   int expanded = 0, all = 0;
@@ -139,8 +139,8 @@ TEST(Balances, AreThoseOfTheDefinitionsTermByTerm) {
 TEST(Balances, ReachUpToTheRootWhereTheFrameIsCharged) {
   SemanticOcTree map = randomMap(62);
   semantic_octree::AbstractionOptions space;
-  space.frame = semantic_octree::AbstractionSpace::Frame::Charged;
-  LiveCompression live(map, LiveCompression::allClasses(map), space);
+  space.frame = semantic_octree::AbstractionOptions::Frame::Charged;
+  LiveCompression live(map, LiveCompression::allClasses(map, space));
   const auto balances = live.balancesAround(voxelOfClass(map, 1));
   EXPECT_EQ(balances.size(), 16u);
   EXPECT_EQ(balances.front().node, 0);
@@ -151,7 +151,7 @@ TEST(Balances, OfABlockItsShareOfWhatIsRelevantIsRetained) {
   SemanticOcTree map = randomMap(64);
   semantic_octree::AbstractionOptions space;
   space.blockSize = kBlock;
-  LiveCompression live(map, LiveCompression::allClasses(map), space);
+  LiveCompression live(map, LiveCompression::allClasses(map, space));
   live.setWeight(1, -0.2);
   int between = 0;
   const double low = live.lowestAlpha(), high = live.highestAlpha();
@@ -174,7 +174,7 @@ TEST(Balances, OfABlockItsShareOfWhatIsRelevantIsRetained) {
 
 TEST(Balances, WhatIsRetainedIsGreenAndWhatIsLostRed) {
   SemanticOcTree map = randomMap(65);
-  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  LiveCompression live(map, LiveCompression::allClasses(map));
   const map_view::CompressedCells cells(map, live);
   map_view::CellLook look(map);
   map_view::ViewStyle style;

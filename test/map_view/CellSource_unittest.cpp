@@ -52,11 +52,10 @@ std::map<CubeId, bool> leavesOf(const SemanticOcTree& map, bool withFree) {
   return leaves;
 }
 
-semantic_octree::Solution keepRoads() {
-  semantic_octree::Solution solution;
-  solution.terms = {{"road", 1, {{1}}}, {"tree", 0.5, {{2}}}};
-  solution.alpha = 0.01;
-  return solution;
+semantic_octree::AbstractionOptions keepRoads() {
+  semantic_octree::AbstractionOptions options;
+  options.weights = {{{"road", 1, {{1}}}, {"tree", 0.5, {{2}}}}, 0.01};
+  return options;
 }
 
 }  // namespace
@@ -109,12 +108,9 @@ TEST(FullCells, AnswerForEachVoxelAndForUnknownSpace) {
 
 TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
   SemanticOcTree map = randomMap(5), other = map;
-  const LiveCompression compression(map, keepRoads(), {});
+  const LiveCompression compression(map, keepRoads());
   const CompressedCells cells(map, compression);
-  semantic_octree::AbstractionOptions options;
-  options.weights.terms = keepRoads().terms;
-  options.weights.alpha = *keepRoads().alpha;
-  setAbstraction(other, options);
+  setAbstraction(other, keepRoads());
   CellLook look(map);
   for (const bool withFree : {false, true}) {
     ViewStyle style;

@@ -20,7 +20,6 @@ using semantic_octree::Abstraction;
 using semantic_octree::AbstractionOptions;
 using semantic_octree::LeafCell;
 using semantic_octree::SemanticOcTree;
-using semantic_octree::Solution;
 
 std::size_t termNamed(const LiveCompression& live, const std::string& name) {
   std::size_t term = 0;
@@ -43,14 +42,13 @@ std::set<CubeId> leavesOf(const SemanticOcTree& map, const LiveCompression& live
 }
 
 /** With G-values: of a solution with its terms alone, as semantic-map-compress finds it. */
-std::set<CubeId> leavesOfSolution(SemanticOcTree map, const Solution& solution,
-                                  const AbstractionOptions& space) {
+std::set<CubeId> leavesOfSolution(SemanticOcTree map, const AbstractionOptions& solution) {
   const semantic_octree::TermCatalog catalog(map.classes(), {solution});
-  AbstractionOptions options = space;
+  AbstractionOptions options = solution;
   options.weights.terms = catalog.terms(0);
   setAbstraction(map, options);
   Abstraction abstraction(map);
-  abstraction.setWeights(catalog.weights(solution, 0), *solution.alpha);
+  abstraction.setWeights(catalog.weights(solution, 0), solution.weights.alpha);
   std::set<CubeId> leaves;
   for (const LeafCell& leaf : abstraction.leaves()) leaves.insert(cubeOf(leaf.lowest, leaf.depth));
   return leaves;
@@ -75,7 +73,7 @@ tree_abstraction::AlphaPath pathOf(const map_view::InformationTree& tree) {
 
 TEST(LiveCompression, CountsTheLeavesOfItsTree) {
   SemanticOcTree map = randomMap(51);
-  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  LiveCompression live(map, LiveCompression::allClasses(map));
   std::size_t before = map.getNumLeafNodes() + 1;
   for (const double alpha : {0.0, 1e-4, 0.003, 0.02, 0.3, 10.0}) {
     live.setAlpha(alpha);
@@ -95,7 +93,7 @@ TEST(LiveCompression, CountsTheLeavesOfItsTree) {
 
 TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfLeaves) {
   SemanticOcTree map = randomMap(52);
-  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  LiveCompression live(map, LiveCompression::allClasses(map));
   for (const std::size_t wanted : {100u, 700u, 3000u}) {
     live.setLeaves(wanted);
     EXPECT_LE(live.numLeaves(), wanted);
@@ -110,9 +108,9 @@ TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfLeaves) {
 
 TEST(LiveCompression, IsTheMapThatGValuesLeadTo) {
   SemanticOcTree map = randomMap(59), other = map;
-  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  LiveCompression live(map, LiveCompression::allClasses(map));
   AbstractionOptions options;
-  options.weights.terms = live.solution().terms;
+  options.weights.terms = live.solution().weights.terms;
   options.weights.alpha = 0.004;
   live.setAlpha(0.004);
   setAbstraction(other, options);
@@ -123,7 +121,7 @@ TEST(LiveCompression, IsTheMapThatGValuesLeadTo) {
 
 TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfBytes) {
   SemanticOcTree map = randomMap(60);
-  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  LiveCompression live(map, LiveCompression::allClasses(map));
   const auto bytes = [&] { return semantic_octree::fileSize(live.compressedMap(map)); };
   live.setBytes(map, 10'000'000);
   const std::size_t most = bytes();
@@ -151,13 +149,13 @@ TEST(LiveCompression, HasTheLeavesOfItsSolutionAlone) {
     SemanticOcTree map = original;
     AbstractionOptions space;
     space.blockSize = blockSize;
-    LiveCompression live(map, LiveCompression::allClasses(map), space);
+    LiveCompression live(map, LiveCompression::allClasses(map, space));
     for (int i = 0; i < 8; ++i) {
       const std::size_t term = random() % live.numTerms();
       live.setWeight(term, 0.25 * double(random() % 13) - 1);
       live.setAlpha(i == 0 ? 5.0 : 1e-3 * double(1 + random() % 40));
       const auto leaves = leavesOf(map, live);
-      EXPECT_EQ(leaves, leavesOfSolution(original, live.solution(), live.space())) << i;
+      EXPECT_EQ(leaves, leavesOfSolution(original, live.solution())) << i;
       EXPECT_EQ(live.numLeaves(), leaves.size()) << i;
     }
   }
@@ -165,7 +163,7 @@ TEST(LiveCompression, HasTheLeavesOfItsSolutionAlone) {
 
 TEST(LiveCompression, RetainsWhatGValuesSay) {
   SemanticOcTree map = randomMap(58), other = map;
-  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  LiveCompression live(map, LiveCompression::allClasses(map));
   live.setLeaves(500);
   const semantic_octree::TermCatalog catalog(map.classes(), {LiveCompression::allClasses(map)});
   AbstractionOptions options;
@@ -185,7 +183,7 @@ TEST(LiveCompression, RetainsWhatGValuesSay) {
 
 TEST(LiveCompression, TellsWhereLeavesCameAndWent) {
   SemanticOcTree map = randomMap(55);
-  LiveCompression live(map, LiveCompression::allClasses(map), {});
+  LiveCompression live(map, LiveCompression::allClasses(map));
   EXPECT_EQ(live.takeChange().size(), 1u) << "all of it";
   EXPECT_TRUE(live.takeChange().empty());
   const auto check = [&](const auto& change) {
@@ -210,11 +208,9 @@ TEST(LiveCompression, TellsWhereLeavesCameAndWent) {
 
 TEST(LiveCompression, RefusesContradictionsAndStaysAsItWas) {
   SemanticOcTree map = randomMap(56);
-  Solution solution;
-  solution.name = "ground";
-  solution.alpha = 0.002;
-  solution.terms = {{"ground", 1, {{1, 2}}}};
-  LiveCompression live(map, solution, {});
+  AbstractionOptions solution;
+  solution.weights = {{{"ground", 1, {{1, 2}}}}, 0.002};
+  LiveCompression live(map, solution);
   const std::size_t road = termNamed(live, "road");
   EXPECT_EQ(live.weight(road), 0);
   const auto before = leavesOf(map, live);
@@ -225,44 +221,41 @@ TEST(LiveCompression, RefusesContradictionsAndStaysAsItWas) {
   EXPECT_NE(errorOf([&] { live.setAlpha(-1); }), "");
   EXPECT_EQ(live.alpha(), 0.002);
   SemanticOcTree empty(0.2, threeClasses());
-  EXPECT_EQ(errorOf([&] { LiveCompression(empty, {}, {}); }), "the map is empty");
+  EXPECT_EQ(errorOf([&] { LiveCompression(empty, {}); }), "the map is empty");
 }
 
 namespace {
 using semantic_octree::Region;
-using semantic_octree::WeightsFile;
 
-WeightsFile readAgain(const Solution& solution, const AbstractionOptions& space) {
-  const TemporaryFolder folder;
+std::vector<AbstractionOptions> readAgain(const AbstractionOptions& solution) {
   const auto classes = threeClasses();
-  return semantic_octree::loadWeights(
-      folder.write("weights.yaml", map_view::weightsText(solution, space, classes)), classes);
+  return semantic_octree::weightsOfText(map_view::weightsText(solution, classes), "it", classes);
 }
 
-Solution someSolution() {
-  Solution solution;
+AbstractionOptions someSolution() {
+  AbstractionOptions solution;
   solution.name = "view";
-  solution.alpha = 0.1 + 0.2;  // more digits than a stream writes
-  solution.terms = {{"free_space", 1.0 / 3, {{0}}},
-                    {"road", -0.7, {{1}}},
-                    {"high things", 2, {{2, 3}}},
-                    {"everything", 0.125, {{0}, {1}, {2}, {3}}}};
+  solution.weights.alpha = 0.1 + 0.2;  // more digits than a stream writes
+  solution.weights.terms = {{"free_space", 1.0 / 3, {{0}}},
+                            {"road", -0.7, {{1}}},
+                            {"high things", 2, {{2, 3}}},
+                            {"everything", 0.125, {{0}, {1}, {2}, {3}}}};
   return solution;
 }
 
 }  // namespace
 
 TEST(WeightsText, IsReadAgainToTheLastBit) {
-  const Solution solution = someSolution();
-  const WeightsFile file = readAgain(solution, {});
-  ASSERT_EQ(file.solutions.size(), 1u);
-  const Solution& read = file.solutions[0];
+  const AbstractionOptions solution = someSolution();
+  const std::vector<AbstractionOptions> all = readAgain(solution);
+  ASSERT_EQ(all.size(), 1u);
+  const AbstractionOptions& read = all[0];
   EXPECT_EQ(read.name, "view");
-  EXPECT_EQ(*read.alpha, *solution.alpha);
-  ASSERT_EQ(read.terms.size(), solution.terms.size());
-  for (const auto& term : solution.terms) {
+  EXPECT_EQ(read.weights.alpha, solution.weights.alpha);
+  ASSERT_EQ(read.weights.terms.size(), solution.weights.terms.size());
+  for (const auto& term : solution.weights.terms) {
     bool found = false;
-    for (const auto& other : read.terms)
+    for (const auto& other : read.weights.terms)
       if (other.name == term.name) {
         found = true;
         EXPECT_EQ(other.weight, term.weight) << term.name;
@@ -273,7 +266,7 @@ TEST(WeightsText, IsReadAgainToTheLastBit) {
 }
 
 TEST(WeightsText, HasHowSpaceCounts) {
-  AbstractionOptions space;
+  AbstractionOptions space = someSolution();
   space.unknown = AbstractionOptions::Unknown::Uniform;
   space.blockSize = 0.1 + 0.7;
   Region box, sphere, corridor;
@@ -281,7 +274,7 @@ TEST(WeightsText, HasHowSpaceCounts) {
   sphere.shape = Region::Shape::Sphere, sphere.a = {1, 2, 3}, sphere.radius = 2;
   corridor.shape = Region::Shape::Corridor, corridor.b = {9, 0, 0}, corridor.radius = 0.5;
   space.regions = {box, sphere, corridor};
-  const AbstractionOptions read = readAgain(someSolution(), space).space;
+  const AbstractionOptions read = readAgain(space).at(0);
   EXPECT_EQ(read.unknown, space.unknown);
   EXPECT_EQ(read.blockSize, space.blockSize);
   ASSERT_EQ(read.regions.size(), 3u);
@@ -295,7 +288,7 @@ TEST(WeightsText, HasHowSpaceCounts) {
 }
 
 TEST(WeightsText, IsRefusedWhereNothingHasAWeight) {
-  Solution solution = someSolution();
-  for (auto& term : solution.terms) term.weight = 0;
-  EXPECT_NE(errorOf([&] { map_view::weightsText(solution, {}, threeClasses()); }), "");
+  AbstractionOptions solution = someSolution();
+  for (auto& term : solution.weights.terms) term.weight = 0;
+  EXPECT_NE(errorOf([&] { map_view::weightsText(solution, threeClasses()); }), "");
 }

@@ -194,10 +194,9 @@ TEST(RayCast, BeginsOutsideOfTheMapAndMayMissIt) {
 
 TEST(RayCast, HitsCompressedCellsWhereTheyAreDrawn) {
   SemanticOcTree map = randomMap(15);
-  semantic_octree::Solution solution;
-  solution.terms = {{"road", 1, {{1}}}};
-  solution.alpha = 0.05;
-  const LiveCompression compression(map, solution, {});
+  semantic_octree::AbstractionOptions options;
+  options.weights = {{{"road", 1, {{1}}}}, 0.05};
+  const LiveCompression compression(map, options);
   const CompressedCells cells(map, compression);
   const CellLook look(map);
   const Eigen::Vector2d place = placeAbove(map, 1);

@@ -106,12 +106,10 @@ TEST(TileMesh, HasEachSideThatIsOpenOnceAndNoneThatIsHidden) {
 
 TEST(TileMesh, OfLargeCellsFitsTogetherFromTileToTile) {
   SemanticOcTree map = randomMap(33);
-  semantic_octree::Solution solution;
-  solution.terms = {{"road", 1, {{1}}}};
-  solution.alpha = 0.3;
-  semantic_octree::AbstractionOptions space;
-  space.blockSize = 25.6;  // two tiles
-  const LiveCompression compression(map, solution, space);
+  semantic_octree::AbstractionOptions options;
+  options.weights = {{{"road", 1, {{1}}}}, 0.3};
+  options.blockSize = 25.6;  // two tiles
+  const LiveCompression compression(map, options);
   const CompressedCells cells(map, compression);
   const CellLook look(map);
   double area = 0, expected = 0;

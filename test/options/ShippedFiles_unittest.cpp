@@ -35,9 +35,9 @@ TEST(ShippedFiles, WeightsAreFiveSolutionsForTheirTables) {
   int weights = 0;
   forEachWithTable("weights", [&](const fs::path& file, const auto& classes) {
     const auto read = semantic_octree::loadWeights(file, classes);
-    ASSERT_EQ(read.solutions.size(), 5u) << file;
+    ASSERT_EQ(read.size(), 5u) << file;
     std::size_t outcomes = 0;
-    for (const auto& term : read.solutions.back().terms) outcomes += term.groups.size();
+    for (const auto& term : read.back().weights.terms) outcomes += term.groups.size();
     EXPECT_GE(outcomes, std::size_t(classes.size())) << file << ": the last one has all classes";
     ++weights;
   });

@@ -26,7 +26,9 @@ def test_the_compressed_map_is_that_of_the_program(tmp_path):
     theirs = semantic_octree.Map.load(tmp_path / "out" / "it.semantic")
     terms = {"road": 1, ("grass", "wall"): 0.5, "free_space": -0.1}
     by_file, by_dict = grown.abstraction(weights).map(), grown.abstraction(terms, block_size=3.2).map(alpha=0.003)
-    assert theirs == by_file == by_dict
+    by_text = grown.abstraction({}, relevant="road: 1, grass+wall: 0.5", irrelevant="free_space: 0.1",
+                                block_size=3.2, alpha=0.003).map()
+    assert theirs == by_file == by_dict == by_text
     assert len(theirs) < 0.8 * len(grown)
     program("semantic-map-compress", file, "--weights", weights, "--leaves", 500, "--output", tmp_path / "few")
     few = grown.abstraction(terms, block_size=3.2)

@@ -28,10 +28,10 @@ std::string bytesOf(SemanticOcTree map) {
 
 /** What the program's compressed tree is, by the map that it saves. */
 std::string compressed(SemanticOcTree map) {
-  semantic_octree::AbstractionText text;
-  text.relevant = kRelevant;
-  text.alpha = kAlpha;
-  setAbstraction(map, text.forClasses(map.classes()));
+  semantic_octree::AbstractionOptions options;
+  options.relevant = kRelevant;
+  options.weights.alpha = kAlpha;
+  setAbstraction(map, options);
   return bytesOf(Abstraction(map).compressedMap());
 }
 

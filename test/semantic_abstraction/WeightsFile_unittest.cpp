@@ -4,7 +4,6 @@
 #include "TemporaryFolder.h"
 
 using semantic_octree::AbstractionOptions;
-using semantic_octree::AbstractionText;
 using semantic_octree::loadWeights;
 using semantic_types::ClassTable;
 
@@ -19,15 +18,11 @@ ClassTable roadTreeWall() {
 /** What a file with one solution says. */
 AbstractionOptions ofFile(const std::string& text) {
   const TemporaryFolder folder;
-  const auto file = loadWeights(folder.write("w.yaml", "name: a\n" + text), roadTreeWall());
-  AbstractionOptions options = file.space;
-  options.weights.terms = file.solutions.at(0).terms;
-  options.weights.alpha = file.solutions.at(0).alpha.value_or(-1);
-  return options;
+  return loadWeights(folder.write("w.yaml", "name: a\n" + text), roadTreeWall(), -1).at(0);
 }
 
-AbstractionText someText() {
-  AbstractionText text;
+AbstractionOptions someText() {
+  AbstractionOptions text;
   text.relevant = "road: 1, tree: 0.5";
   return text;
 }
@@ -55,14 +50,14 @@ void expectSame(const AbstractionOptions& a, const AbstractionOptions& b) {
 }  // namespace
 
 TEST(WeightsFile, linesOfTextAndYamlSayTheSame) {
-  AbstractionText text;
+  AbstractionOptions text;
   text.relevant = "road: 1, tree+free_space: 0.5";
   text.irrelevant = "wall: 0.25";
   text.everything = 0.1;
-  text.alpha = 0.03;
+  text.weights.alpha = 0.03;
   text.blockSize = 1.6;
-  text.unknown = AbstractionText::Unknown::Uniform;
-  text.regions = "box 0 0 -1 10 5 3 5; sphere 4 2 0 3 2; corridor 0 0 0 20 0 0 3 4";
+  text.unknown = AbstractionOptions::Unknown::Uniform;
+  text.regionTexts = "box 0 0 -1 10 5 3 5; sphere 4 2 0 3 2; corridor 0 0 0 20 0 0 3 4";
   const AbstractionOptions options = text.forClasses(roadTreeWall());
   expectSame(options,
              ofFile("relevant: {road: 1, soft: {classes: [tree, free_space], weight: 0.5}}\n"
@@ -78,20 +73,20 @@ TEST(WeightsFile, linesOfTextAndYamlSayTheSame) {
 
 TEST(WeightsFile, linesOfTextAreCheckedWithoutClasses) {
   const auto refusal = [](auto change) {
-    AbstractionText text = someText();
+    AbstractionOptions text = someText();
     change(text);
     return errorOf([&] { text.validate(); });
   };
-  EXPECT_EQ(refusal([](AbstractionText&) {}), "");
+  EXPECT_EQ(refusal([](AbstractionOptions&) {}), "");
   EXPECT_TRUE(contains(refusal([](auto& t) { t.relevant = "road"; }), "relevant: 'road'"));
   EXPECT_TRUE(contains(refusal([](auto& t) { t.irrelevant = "road: inf"; }), "irrelevant"));
-  EXPECT_TRUE(contains(refusal([](auto& t) { t.alpha = -1; }), "alpha is -1"));
-  EXPECT_TRUE(contains(refusal([](auto& t) { t.regions = "sphere 0 0 0 -1 2"; }), "radius"));
-  EXPECT_TRUE(contains(refusal([](auto& t) { t.regions = "cube 1"; }), "cube 1"));
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.weights.alpha = -1; }), "alpha is -1"));
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.regionTexts = "sphere 0 0 0 -1 2"; }), "radius"));
+  EXPECT_TRUE(contains(refusal([](auto& t) { t.regionTexts = "cube 1"; }), "cube 1"));
 }
 
 TEST(WeightsFile, aClassCannotBeBothKeptAndDropped) {
-  AbstractionText text = someText();
+  AbstractionOptions text = someText();
   text.irrelevant = "wall+road: 1";
   EXPECT_TRUE(contains(errorOf([&] { text.forClasses(roadTreeWall()); }),
                        "class 'road' is both relevant ('road') and irrelevant ('wall+road')"));
@@ -165,11 +160,11 @@ TEST(TermCatalog, hasClassesFirstAndEachGroupOnce) {
                    " - {name: a, relevant: {g: {classes: [road, tree], weight: 1}, wall: 2}}\n"
                    " - {name: b, irrelevant: {h: {classes: [tree, road], weight: 3}}}\n"),
       roadTreeWall());
-  const semantic_octree::TermCatalog catalog(roadTreeWall(), file.solutions);
+  const semantic_octree::TermCatalog catalog(roadTreeWall(), file);
   ASSERT_EQ(catalog.size(), 5u);
   EXPECT_EQ(catalog.name(0), "free_space");
   EXPECT_EQ(catalog.name(3), "wall");
   EXPECT_EQ(catalog.name(4), "g");
-  EXPECT_EQ(catalog.allWeights(file.solutions[0]), (std::vector<double>{0, 0, 0, 2, 1}));
-  EXPECT_EQ(catalog.allWeights(file.solutions[1]), (std::vector<double>{0, 0, 0, 0, -3}));
+  EXPECT_EQ(catalog.allWeights(file[0]), (std::vector<double>{0, 0, 0, 2, 1}));
+  EXPECT_EQ(catalog.allWeights(file[1]), (std::vector<double>{0, 0, 0, 0, -3}));
 }

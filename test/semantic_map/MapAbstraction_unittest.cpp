@@ -16,7 +16,7 @@ TAbstractionOptions someOptions() {
   TAbstractionOptions o;
   o.relevant = "road: 1, tree+wall: 0.5";
   o.everything = 0.1;
-  o.alpha = 0.01;
+  o.weights.alpha = 0.01;
   o.blockSize = 3.2;
   return o;
 }

@@ -168,7 +168,7 @@ TEST(MapOptions, whatIsDumpedIsReadBack) {
   semantic_map::TAbstractionOptions options, read;
   options.relevant = "road: 1, tree+wall: 0.5";
   options.unknown = semantic_octree::AbstractionOptions::Unknown::Uniform;
-  options.regions = "box 0 0 0 1 2 3 4; sphere 1 2 3 0.5 0";
+  options.regionTexts = "box 0 0 0 1 2 3 4; sphere 1 2 3 0.5 0";
   options.blockSize = 1.0 / 3;
   std::ostringstream dump;
   options.dumpToTextStream(dump);
@@ -176,7 +176,7 @@ TEST(MapOptions, whatIsDumpedIsReadBack) {
   EXPECT_EQ(read.relevant, options.relevant);
   EXPECT_EQ(read.irrelevant, "");
   EXPECT_EQ(read.unknown, options.unknown);
-  EXPECT_EQ(read.regions, options.regions);
+  EXPECT_EQ(read.regionTexts, options.regionTexts);
   EXPECT_EQ(read.blockSize, options.blockSize);
 }
 

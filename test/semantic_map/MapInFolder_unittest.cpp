@@ -32,7 +32,7 @@ semantic_map::TFolderOptions tilesIn(const std::filesystem::path& folder, bool r
 semantic_map::TAbstractionOptions someAbstraction() {
   semantic_map::TAbstractionOptions options;
   options.relevant = "road: 1, tree: 0.5";
-  options.alpha = 0.02;
+  options.weights.alpha = 0.02;
   options.blockSize = 0.8;
   return options;
 }

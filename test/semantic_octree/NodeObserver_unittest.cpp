@@ -18,7 +18,7 @@ namespace {
 /** Keeps of each inner node how many voxels are known below it. */
 class VoxelCounter final : public NodeObserver {
  public:
-  static std::uint64_t known(const NodeStore& store, const Slot& slot, const Cell& cell) {
+  static std::uint64_t known(const NodeStore& store, const Slot& slot, const Cube& cell) {
     const auto edge = static_cast<std::uint64_t>(cell.edge());
     if (slot.isInner()) return *store.state<std::uint64_t>(slot);
     return slot.isKnown() ? edge * edge * edge : 0;
@@ -38,7 +38,7 @@ class VoxelCounter final : public NodeObserver {
 
  private:
   struct Counting final : Worker {
-    void recompute(NodeStore& store, Slot& inner, const Cell& cell, bool) override {
+    void recompute(NodeStore& store, Slot& inner, const Cube& cell, bool) override {
       std::uint64_t sum = 0;
       if (inner.kind == Slot::Kind::Block)
         sum = static_cast<std::uint64_t>(countOf(store.block(inner).known));
@@ -59,7 +59,7 @@ void expectUpToDate(const SemanticOcTree& map) {
   for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
     voxels += std::uint64_t(1) << 3 * (map.getTreeDepth() - leaf.getDepth());
   const NodeStore& store = MapAccess::store(map);
-  EXPECT_EQ(VoxelCounter::known(store, store.root(), Cell()), voxels);
+  EXPECT_EQ(VoxelCounter::known(store, store.root(), Cube()), voxels);
   SemanticOcTree anew = map;
   EXPECT_TRUE(anew == map);
   observe(anew);

@@ -1,19 +1,43 @@
 #include <gtest/gtest.h>
+#include <reference/GTreeSearch.h>
 #include <tree_abstraction/AlphaPath.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <random>
 
-#include "FirstTrees.h"
-#include "PathExamples.h"
+#include "RandomTrees.h"
 
-using namespace path_examples;
+using namespace tree_abstraction;
+using namespace reference;
+using random_trees::Engine;
+using random_trees::Shape;
 
 namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::vector<double> tausOf(const SearchResult& found, const AbstractionWeights& weights) {
+  return collapseAlphas(found.parents(), found.gains(weights), found.prices());
+}
+
+/** Nodes that tree k expands. */
+std::vector<char> expandedBy(const AlphaPath& path, std::size_t k, const std::vector<double>& tau) {
+  std::vector<char> mask;
+  for (const double t : tau) mask.push_back(path.treeOf(t) <= k);
+  return mask;
+}
+
+/** Nodes the compressed tree of one alpha expands. \param eps what counts as a tie */
+std::vector<char> expandedAt(const std::vector<double>& tau, double alpha, double eps = 0) {
+  std::vector<char> mask;
+  for (const double t : tau) mask.push_back(t > alpha + eps);
+  return mask;
+}
 
 std::size_t count(const std::vector<char>& mask) {
   return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), char{true}));
@@ -28,79 +52,31 @@ TEST(AlphaPath, treesAreNestedAndEachIsTheOptimumAtItsAlpha) {
     const auto tree = random_trees::makeTree(shape, random);
     auto weights = random_trees::makeWeights(shape, random);
     weights.alpha = 0;
-    const AlphaPath path(tausOf(findOptimalTree(tree, weights), weights));
+    const std::vector<double> tau = tausOf(findOptimalTree(tree, weights), weights);
+    const AlphaPath path(tau);
+    const auto expanded = [&](std::size_t k) { return expandedBy(path, k, tau); };
     ASSERT_GT(path.numTrees(), 3u);
-    EXPECT_EQ(count(path.expanded(0)), 0u);
+    EXPECT_EQ(count(expanded(0)), 0u);
     EXPECT_EQ(path.highestAlpha(0), kInfinity);
     EXPECT_EQ(path.lowestAlpha(path.numTrees() - 1), 0.0);
     for (std::size_t k = 0; k < path.numTrees(); ++k) {
       EXPECT_LT(path.lowestAlpha(k), path.highestAlpha(k));
       weights.alpha = path.alpha(k);
-      EXPECT_EQ(path.expanded(k), findOptimalTree(tree, weights).expanded());
+      EXPECT_EQ(expanded(k), findOptimalTree(tree, weights).expanded());
       if (k == 0) continue;
       EXPECT_EQ(path.highestAlpha(k), path.lowestAlpha(k - 1));
-      const auto smaller = path.expanded(k - 1), larger = path.expanded(k);
+      const auto smaller = expanded(k - 1), larger = expanded(k);
       EXPECT_LT(count(smaller), count(larger));
       for (std::size_t n = 0; n < larger.size(); ++n) EXPECT_LE(smaller[n], larger[n]);
     }
   }
 }
 
-TEST(AlphaPath, totalsCountLeavesAndInformationAlongThePath) {
-  const Example example(6);
-  const AlphaPath path(example.tau);
-  const auto leaves = path.totals(addedLeaves(example.found.forest), 1.0);
-  const auto entropies = path.totals(example.found.prices(), 0.0);
-  for (std::size_t k = 0; k < path.numTrees(); k += 7) {
-    const auto measures = measuresOf(example.found, example.weights, path.expanded(k));
-    EXPECT_EQ(leaves[k], static_cast<double>(measures.numLeaves));
-    EXPECT_NEAR(entropies[k], measures.leafEntropy, 1e-12);
-  }
-}
-
-TEST(AlphaPath, givesTheLargestTreeWithinAWantedNumberOfLeaves) {
-  const Example example(7);
-  const AlphaPath path(example.tau);
-  const auto added = addedLeaves(example.found.forest);
-  const auto leaves = path.totals(added, 1.0);
-  const std::size_t all = example.found.full.numLeaves;
-  for (std::size_t wanted = 1; wanted <= all; ++wanted) {
-    const std::size_t k = path.largestWithin(static_cast<double>(wanted), added, 1);
-    EXPECT_LE(leaves[k], static_cast<double>(wanted));
-    if (k + 1 < path.numTrees()) {
-      EXPECT_GT(leaves[k + 1], static_cast<double>(wanted));
-    }
-  }
-}
-
-TEST(AlphaPath, aBudgetOfBytesMayExceedTheWholeTreeButNotFallBelowTheRoots) {
-  const AlphaPath path({3, 2, 2, 1, 0, -1});
-  const std::vector<double> bytes{10, 5, 5, 20, 100, 100};
-  ASSERT_EQ(path.numTrees(), 4u);
-  EXPECT_EQ(path.largestWithin(4, bytes, 4), 0u);
-  EXPECT_EQ(path.largestWithin(14, bytes, 4), 1u);
-  EXPECT_EQ(path.largestWithin(23, bytes, 4), 1u);  // the two of tau 2 come together
-  EXPECT_EQ(path.largestWithin(24, bytes, 4), 2u);
-  EXPECT_EQ(path.largestWithin(1e9, bytes, 4), 3u);
-  EXPECT_EQ(path.expanded(3), (std::vector<char>{1, 1, 1, 1, 0, 0}));
-  EXPECT_THROW(path.largestWithin(3, bytes, 4), std::invalid_argument);
-  EXPECT_THROW(path.largestWithin(kNan, bytes, 4), std::invalid_argument);
-}
-
-TEST(AlphaPath, rejectsCostsThatDoNotFit) {
-  const AlphaPath path({3, 2});
-  EXPECT_THROW(path.totals({1}, 0), std::invalid_argument);
-  EXPECT_THROW(path.largestWithin(5, {1, -1}, 1), std::invalid_argument);
-  EXPECT_THROW(path.largestWithin(5, {1, kNan}, 1), std::invalid_argument);
-  EXPECT_THROW(path.largestWithin(1, {1, 1, 1}, 1), std::invalid_argument);
-  EXPECT_THROW(path.expanded(3), std::out_of_range);
-  EXPECT_THROW(AlphaPath({1, kNan}), std::invalid_argument);
-}
-
 TEST(AlphaPath, tausThatDifferByRoundingComeTogether) {
-  const AlphaPath path({1.0, 1.0 + 1e-15, 1.0 - 1e-15, 0.5});
+  const std::vector<double> tau{1.0, 1.0 + 1e-15, 1.0 - 1e-15, 0.5};
+  const AlphaPath path(tau);
   EXPECT_EQ(path.numTrees(), 3u);
-  EXPECT_EQ(count(path.expanded(1)), 3u);
+  EXPECT_EQ(count(expandedBy(path, 1, tau)), 3u);
 }
 
 TEST(AlphaPath, treesThatAreFreeAreOptimalAtEveryFiniteAlpha) {
@@ -117,7 +93,7 @@ TEST(AlphaPath, aTreeThatNeverPaysIsItsRoot) {
   const AlphaPath path({-1.0, -kInfinity});
   EXPECT_EQ(path.numTrees(), 1u);
   EXPECT_GT(path.alpha(0), 0.0);
-  EXPECT_EQ(count(path.expanded(0)), 0u);
+  EXPECT_EQ(path.treeOf(-1), 1u);
 }
 
 namespace {
@@ -242,8 +218,6 @@ TEST(CollapseAlphas, rejectsWhatIsNoForest) {
   EXPECT_THROW(collapseAlphas({-1}, {1}, {kInfinity}), std::invalid_argument);
 }
 
-using namespace tree_abstraction;
-
 namespace {
 
 /** Many of them agree, some but for rounding, some in chains; some are infinite, 0 or below. */
@@ -260,45 +234,50 @@ std::vector<double> someTaus(std::mt19937& random, std::size_t number) {
   return tau;
 }
 
+/** Taus of what comes in together, the largest first; each group falls. */
+std::vector<std::vector<double>> groupsOf(std::vector<double> tau) {
+  std::sort(tau.begin(), tau.end(), std::greater<>());
+  std::vector<std::vector<double>> groups;
+  double before = kNan;
+  for (const double t : tau) {
+    if (!(t > 0)) break;
+    if (groups.empty() || !isTie(before, t)) groups.emplace_back();
+    groups.back().push_back(before = t);
+  }
+  return groups;
+}
+
 /** \param share of the nodes that are asked for */
-void expectThePathsTrees(const std::vector<double>& tau, double share, std::mt19937& random) {
-  const AlphaPath path{std::vector<double>(tau)};
-  const auto first = firstTreesOf(path);
+void expectTreesOfGroups(const std::vector<double>& tau, double share, std::mt19937& random) {
   std::vector<double> asked;
-  std::map<std::size_t, std::size_t> trees = {{0, 0}};  // and their steps
-  for (std::size_t i = 0; i < tau.size(); ++i) {
-    if (static_cast<double>(random() % 1000) >= 1000 * share) continue;
-    asked.push_back(tau[i]);
-    if (first[i] < path.numTrees()) trees[first[i]];
+  for (const double t : tau)
+    if (static_cast<double>(random() % 1000) < 1000 * share) asked.push_back(t);
+  const AlphaPath path(tau, asked);
+  const auto groups = groupsOf(tau);
+  std::size_t tree = 0;
+  EXPECT_EQ(path.highestAlpha(0), kInfinity);
+  EXPECT_EQ(path.lowestAlpha(0), groups.empty() ? 0 : groups[0][0]);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto isHere = [&](double t) {
+      return std::find(groups[g].begin(), groups[g].end(), t) != groups[g].end();
+    };
+    if (std::none_of(asked.begin(), asked.end(), isHere)) continue;
+    ++tree;
+    for (const double t : groups[g]) EXPECT_EQ(path.treeOf(t), tree);
+    EXPECT_EQ(path.highestAlpha(tree), groups[g].back());
+    EXPECT_EQ(path.lowestAlpha(tree), g + 1 < groups.size() ? groups[g + 1][0] : 0);
   }
-  std::size_t number = 0;
-  for (auto& [tree, step] : trees) step = number++;
-  const AlphaSteps steps(tau, asked);
-  ASSERT_EQ(steps.numSteps(), trees.size() + 1);
-  for (const auto& [tree, step] : trees) {
-    EXPECT_EQ(steps.alpha(step), path.alpha(tree));
-    EXPECT_EQ(steps.highestAlpha(step), path.highestAlpha(tree));
-  }
-  for (const double t : asked) {
-    const auto node = static_cast<std::size_t>(std::find(tau.begin(), tau.end(), t) - tau.begin());
-    const bool isExpanded = first[node] < path.numTrees();
-    EXPECT_EQ(steps.stepOf(t), isExpanded ? trees.at(first[node]) : steps.numSteps() - 1);
-  }
+  EXPECT_EQ(path.numTrees(), tree + 1);
+  for (const double t : {0.0, -1.0}) EXPECT_EQ(path.treeOf(t), tree + 1);
 }
 
 }  // namespace
 
-TEST(AlphaSteps, areThePathsTreesInWhichSomeNodesComeIn) {
+TEST(AlphaPath, hasTheTreesInWhichNodesComeInThatAreAskedFor) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const auto tau = someTaus(random, 1 + seed % 60);
-    for (const double share : {0.0, 0.1, 0.5, 1.0}) expectThePathsTrees(tau, share, random);
+    const auto tau = someTaus(random, seed % 60);
+    for (const double share : {0.0, 0.1, 0.5, 1.0}) expectTreesOfGroups(tau, share, random);
   }
-}
-
-TEST(AlphaSteps, ofNothingAreTheRootsAlone) {
-  const AlphaSteps steps({}, {});
-  EXPECT_EQ(steps.numSteps(), 2u);
-  EXPECT_EQ(steps.alpha(0), AlphaPath({}).alpha(0));
 }

@@ -178,12 +178,11 @@ semantic_octree::AbstractionOptions Wish::forClasses(const semantic_types::Class
                                                      const std::string& name) const {
   if (weights.empty())
     throw std::runtime_error("no weights: neither the sender nor the receiver has --weights");
-  const auto file = semantic_octree::weightsOfText(weights, name, classes);
-  const semantic_octree::Solution& s = file.solution(solution);
+  auto options = semantic_octree::solutionIn(
+      semantic_octree::weightsOfText(weights, name, classes, 0), solution, name);
   // The terms of semantic-map-compress, in its order: rounding decides no tie otherwise.
-  semantic_octree::AbstractionOptions options = file.space;
-  options.weights.terms = semantic_octree::TermCatalog(classes, {s}).weighedTerms(s, 0);
-  options.weights.alpha = alpha.value_or(s.alpha.value_or(0));
+  options.weights.terms = semantic_octree::TermCatalog(classes, {options}).weighedTerms(options, 0);
+  if (alpha) options.weights.alpha = *alpha;
   return options;
 }
 

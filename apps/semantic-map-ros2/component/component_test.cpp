@@ -110,9 +110,9 @@ std::string bytesOf(SemanticOcTree map) {
 /** The compressed tree of the map that was saved. */
 std::string savedTree() {
   SemanticOcTree map = semantic_octree::loadTree(kMapFile);
-  semantic_octree::AbstractionText text;
-  text.relevant = kRelevant;
-  setAbstraction(map, text.forClasses(map.classes()));
+  semantic_octree::AbstractionOptions options;
+  options.relevant = kRelevant;
+  setAbstraction(map, options);
   return bytesOf(semantic_octree::Abstraction(map).compressedMap());
 }
 

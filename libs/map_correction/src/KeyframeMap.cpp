@@ -23,14 +23,14 @@ class TileReplacement {
         m_comparison(target.store, source, nullptr) {}
 
   void replace(const TileRange& tiles) {
-    replace(m_store.root(), Cell(), tiles, m_source.root());
+    replace(m_store.root(), Cube(), tiles, m_source.root());
     m_nodes.tellNoted();
   }
 
  private:
   /** \param tiles those below the node \param source the other tree's node there; a leaf stands for
    * all that is below \return whether anything changed */
-  bool replace(Slot& slot, const Cell& cell, const TileRange& tiles, const Slot& source) {
+  bool replace(Slot& slot, const Cube& cell, const TileRange& tiles, const Slot& source) {
     m_store.bring(slot);
     const bool changed = cell.depth == kTileDepth
                              ? m_nodes.note(cell, replaceAll(slot, cell, source))
@@ -39,7 +39,7 @@ class TileReplacement {
     return changed;
   }
 
-  bool replaceBelow(Slot& slot, const Cell& cell, const TileRange& tiles, const Slot& source) {
+  bool replaceBelow(Slot& slot, const Cube& cell, const TileRange& tiles, const Slot& source) {
     if (!slot.isInner() && !source.isInner() && m_comparison.same(slot, source)) return false;
     Octant& octant = slot.isInner()   ? m_store.octant(slot)
                      : slot.isKnown() ? m_nodes.arena.expandToOctant(slot)
@@ -53,7 +53,7 @@ class TileReplacement {
     return finish(slot, cell, changed);
   }
 
-  bool finish(Slot& slot, const Cell& cell, bool changed) {
+  bool finish(Slot& slot, const Cube& cell, bool changed) {
     const Octant& octant = m_store.octant(slot);
     const bool isEmpty = std::none_of(octant.slots, octant.slots + 8,
                                       [](const Slot& child) { return child.isKnown(); });
@@ -66,10 +66,10 @@ class TileReplacement {
 
   /** A node that was replaced knows nothing of what was told of the one before: it counts as
    * reshaped. */
-  void recompute(Slot& inner, const Cell& cell) { m_nodes.recompute(inner, cell, true); }
+  void recompute(Slot& inner, const Cube& cell) { m_nodes.recompute(inner, cell, true); }
 
   /** A tile, or a node below. What is alike stays where it is. */
-  bool replaceAll(Slot& slot, const Cell& cell, const Slot& source) {
+  bool replaceAll(Slot& slot, const Cube& cell, const Slot& source) {
     if (m_comparison.same(slot, source)) return false;
     if (slot.kind != Slot::Kind::Octant || source.kind != Slot::Kind::Octant) {
       if (slot.isKnown()) m_nodes.arena.remove(slot);
@@ -83,7 +83,7 @@ class TileReplacement {
     return true;
   }
 
-  void copy(Slot& unknown, const Cell& cell, const Slot& source) {
+  void copy(Slot& unknown, const Cube& cell, const Slot& source) {
     if (source.isLeaf()) {
       m_nodes.arena.createLeaf(unknown, source.value);
       if (source.kind == Slot::Kind::LeafWithRecord)

@@ -41,10 +41,9 @@ class LeavesCursor {
   int m_depth;
 };
 
-Cell cellOf(const TreeIterator& node) {
+Cube cellOf(const TreeIterator& node) {
   const auto key = node.getIndexKey();
-  const auto depth = static_cast<int>(node.getDepth());
-  return {VoxelIndex(key[0], key[1], key[2]) / edgeAtDepth(depth), depth};
+  return {{key[0], key[1], key[2]}, static_cast<int>(node.getDepth())};
 }
 
 std::vector<std::string> namesOf(const ClassTable& classes) {
@@ -54,8 +53,8 @@ std::vector<std::string> namesOf(const ClassTable& classes) {
   return names;
 }
 
-std::vector<Cell> cellsOf(const SemanticOcTree& leaves) {
-  std::vector<Cell> cells;
+std::vector<Cube> cellsOf(const SemanticOcTree& leaves) {
+  std::vector<Cube> cells;
   for (auto leaf = leaves.begin_leafs(); leaf != leaves.end_leafs(); ++leaf)
     cells.push_back(cellOf(leaf));
   return cells;

@@ -108,14 +108,14 @@ class IndexReader {
     return tile;
   }
 
-  Cell leaf(const YAML::Node& node, int depth) const {
+  Cube leaf(const YAML::Node& node, int depth) const {
     m_yaml.checkKeys(node, {"at", "tiles"});
     const VoxelIndex place = placeOf(m_yaml.required(node, "at"), depth);
     const int tiles = get<int>(node, "tiles", 1, 1 << depth);
     const int above = static_cast<int>(std::lround(std::log2(tiles)));
     if (tiles != 1 << above || (place / tiles * tiles != place).any())
       m_yaml.fail(node, "a leaf that cannot be");
-    return {place / tiles, depth - above};
+    return cubeAt(place / tiles, depth - above);
   }
 
   std::string oldName(const YAML::Node& node, const std::set<std::string>& needed) const {
@@ -233,9 +233,9 @@ void writeIndex(const fs::path& folder, const TileIndex& index) {
          << ", inner: " << tile.innerNodes << ", highest: " << tile.highest
          << ", checksum: " << tile.checksum << "}\n";
   begin("leaves", index.leaves.empty());
-  for (const Cell& leaf : index.leaves) {
+  for (const Cube& leaf : index.leaves) {
     const int tiles = 1 << (index.depth - leaf.depth);
-    text << placeOf(leaf.index * tiles) << "tiles: " << tiles << "}\n";
+    text << placeOf(indexOf(leaf) * tiles) << "tiles: " << tiles << "}\n";
   }
   text << "leaves_checksum: " << index.leavesChecksum << '\n';
   begin("old", index.old.empty());

@@ -1,6 +1,6 @@
 #pragma once
-#include <semantic_octree/store/Cell.h>
 #include <semantic_octree/store/ClassRecord.h>
+#include <semantic_octree/store/Cubes.h>
 
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -29,7 +29,7 @@ struct TileIndex {
   std::uint64_t generation = 0;
   std::vector<Tile> tiles;
   /** As large as tiles, or larger. */
-  std::vector<Cell> leaves;
+  std::vector<Cube> leaves;
   std::uint32_t leavesChecksum = 0;  ///< of their file
   /** Files that earlier saves needed and this does not. Nobody removes others. */
   std::vector<std::string> old;

@@ -51,9 +51,9 @@ void countBelow(const NodeStore& store, const Slot& inner, Count& count) {
 }
 
 /** Adds the cubes at a depth that a scan touched. */
-void addTouched(const Scan& scan, const Cell& cell, int depth, std::vector<VoxelIndex>& cubes) {
-  if (!scan.pyramid().at(ScanPyramid::kTopLevel - cell.depth, cell.index).any()) return;
-  if (cell.depth == depth) return cubes.push_back(cell.index);
+void addTouched(const Scan& scan, const Cube& cell, int depth, std::vector<VoxelIndex>& cubes) {
+  if (!scan.pyramid().at(ScanPyramid::kTopLevel - cell.depth, indexOf(cell)).any()) return;
+  if (cell.depth == depth) return cubes.push_back(indexOf(cell));
   for (int i = 0; i < 8; ++i) addTouched(scan, cell.child(i), depth, cubes);
 }
 
@@ -62,7 +62,7 @@ void addTouched(const Scan& scan, const Cell& cell, int depth, std::vector<Voxel
 void TilesOnDisk::addFromIndex() {
   NodeStore& nodes = store();
   NodeArena& arena = nodes.arena(0);
-  const auto add = [&](const auto& self, Slot& slot, const Cell& cell,
+  const auto add = [&](const auto& self, Slot& slot, const Cube& cell,
                        const TileIndex::Tile& tile) -> void {
     if (slot.isLeaf())
       throw std::runtime_error((m_place.folder / MapFolder::kIndexFile).string() +
@@ -73,11 +73,11 @@ void TilesOnDisk::addFromIndex() {
     }
     slot.value = std::max(slot.value, tile.highest);
     if (cell.depth == m_place.depth) return;
-    const int i = Cell{tile.place, m_place.depth}.childOnTheWay(cell.depth + 1);
+    const int i = childOnTheWay(cubeAt(tile.place, m_place.depth), cell.depth + 1);
     self(self, nodes.octant(slot).slots[i], cell.child(i), tile);
   };
   for (const TileIndex::Tile& t : m_index.tiles) {
-    add(add, nodes.root(), Cell(), t);
+    add(add, nodes.root(), Cube(), t);
     const std::uint64_t code = tileCode(t.place);
     Tile& tile = m_tiles[code];
     tile = {t.place, t.generation, 0, true, false, t.nodes, t.innerNodes, t.checksum};
@@ -93,7 +93,7 @@ Slot* TilesOnDisk::slotOf(const Tile& tile) const {
   Slot* slot = &store().root();
   for (int depth = 1; depth <= m_place.depth; ++depth) {
     if (slot->kind != Kind::Octant) return nullptr;
-    slot = &nodes.octant(*slot).slots[cellOf(tile).childOnTheWay(depth)];
+    slot = &nodes.octant(*slot).slots[childOnTheWay(cellOf(tile), depth)];
   }
   return slot->isInner() ? slot : nullptr;
 }
@@ -177,7 +177,7 @@ void TilesOnDisk::removeChildren(NodeArena& arena, const Slot& octant) {
 
 void TilesOnDisk::prepare(const Scan& scan) {
   std::vector<VoxelIndex> cubes;
-  addTouched(scan, Cell(), m_place.depth, cubes);
+  addTouched(scan, Cube(), m_place.depth, cubes);
   ++m_clock;
   for (const VoxelIndex& cube : cubes) {
     Tile& tile = m_tiles[tileCode(cube)];
@@ -194,9 +194,10 @@ void TilesOnDisk::prepare(const Scan& scan) {
   for (const VoxelIndex& cube : cubes) m_tiles.at(tileCode(cube)).isDirty = true;
 }
 
-void TilesOnDisk::changed(const Cell& cell) {
-  Tile& tile = m_tiles[tileCode(cell.index)];
-  tile.place = cell.index;
+void TilesOnDisk::changed(const Cube& cell) {
+  const VoxelIndex place = indexOf(cell);
+  Tile& tile = m_tiles[tileCode(place)];
+  tile.place = place;
   tile.used = ++m_clock;
   tile.isDirty = true;
   makeRoom(m_clock, m_place.budget);

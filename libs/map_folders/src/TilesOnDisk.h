@@ -30,7 +30,7 @@ class TilesOnDisk : public TileSource {
   void clear() override { m_tiles.clear(); }
   bool mayChange() const override { return m_place.mayWrite; }
   int depth() const override { return m_place.depth; }
-  void changed(const Cell& cell) override;
+  void changed(const Cube& cell) override;
   bool mayHold(const Slot& away, const ClassSet& classes) const override;
   void checkFits(std::optional<std::size_t> available) const override;
 
@@ -61,7 +61,7 @@ class TilesOnDisk : public TileSource {
   using Entry = std::pair<const std::uint64_t, Tile>;
 
   NodeStore& store() const { return MapAccess::store(m_map); }
-  Cell cellOf(const Tile& tile) const { return {tile.place, m_place.depth}; }
+  Cube cellOf(const Tile& tile) const { return cubeAt(tile.place, m_place.depth); }
   /** Where it is, or is to be written. */
   std::string fileOf(const Tile& tile) const;
   NodeArena& arenaWith(bool most);

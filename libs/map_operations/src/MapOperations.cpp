@@ -55,14 +55,14 @@ struct VoxelBox {
 
 class CropCursor {
  public:
-  CropCursor(int numClasses, const VoxelBox& box, const Node& node, const Cell& cell)
+  CropCursor(int numClasses, const VoxelBox& box, const Node& node, const Cube& cell)
       : m_numClasses(numClasses), m_box(box), m_node(node), m_cell(cell) {}
 
   bool known() const {
-    return m_node && (m_cell.lowest() <= m_box.last).all() && (highest() >= m_box.first).all();
+    return m_node && (m_cell.lowest <= m_box.last).all() && (highest() >= m_box.first).all();
   }
   bool isLeaf() const {
-    return m_node.isLeaf() && (m_cell.lowest() >= m_box.first).all() &&
+    return m_node.isLeaf() && (m_cell.lowest >= m_box.first).all() &&
            (highest() <= m_box.last).all();
   }
   LeafContent content() const { return contentOf(m_node, m_numClasses); }
@@ -72,12 +72,12 @@ class CropCursor {
   }
 
  private:
-  VoxelIndex highest() const { return m_cell.lowest() + (m_cell.edge() - 1); }
+  VoxelIndex highest() const { return m_cell.lowest + (m_cell.edge() - 1); }
 
   int m_numClasses;
   const VoxelBox& m_box;
   Node m_node;
-  Cell m_cell;
+  Cube m_cell;
 };
 
 /** Voxels whose centers are in a box. */
@@ -142,7 +142,7 @@ SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box
     throw std::invalid_argument("cropping: the box is empty, or not a number");
   SemanticOcTree part = emptyLike(map);
   const VoxelBox voxels = voxelsIn(box, map.getResolution());
-  TreeBuilder::fill(part, CropCursor(map.numClasses(), voxels, map.root(), Cell()));
+  TreeBuilder::fill(part, CropCursor(map.numClasses(), voxels, map.root(), Cube()));
   return part;
 }
 
@@ -160,13 +160,13 @@ namespace {
 /** Axis-aligned box in voxels of the old map, as keys with fractions. */
 using Bounds = Eigen::AlignedBox3d;
 
-Bounds boundsOf(const Cell& cell) {
-  const Eigen::Vector3d low = cell.lowest().cast<double>();
+Bounds boundsOf(const Cube& cell) {
+  const Eigen::Vector3d low = cell.lowest.cast<double>();
   return {low, low + Eigen::Vector3d::Constant(cell.edge())};
 }
 
 /** Whether any known leaf below a node overlaps the bounds. */
-bool anyKnown(const Node& node, const Cell& cell, const Bounds& bounds) {
+bool anyKnown(const Node& node, const Cube& cell, const Bounds& bounds) {
   if (!node || !boundsOf(cell).intersects(bounds)) return false;
   if (node.isLeaf()) return true;
   for (int i = 0; i < 8; ++i)
@@ -184,7 +184,7 @@ struct Move {
 /** A cube of the new map, and the smallest node of the old one that holds all of it. */
 class MoveCursor {
  public:
-  explicit MoveCursor(const Move& move) : MoveCursor(move, Cell(), move.map.root(), Cell()) {}
+  explicit MoveCursor(const Move& move) : MoveCursor(move, Cube(), move.map.root(), Cube()) {}
 
   bool known() const {
     return m_cell.depth == kTreeDepth ? static_cast<bool>(m_node)
@@ -195,7 +195,7 @@ class MoveCursor {
   MoveCursor child(int i) const { return {m_move, m_cell.child(i), m_node, m_nodeCell}; }
 
  private:
-  MoveCursor(const Move& move, const Cell& cell, const Node& node, const Cell& nodeCell)
+  MoveCursor(const Move& move, const Cube& cell, const Node& node, const Cube& nodeCell)
       : m_move(move), m_cell(cell), m_node(node), m_nodeCell(nodeCell) {
     while (m_node && !m_node.isLeaf() && descend()) continue;
   }
@@ -203,7 +203,7 @@ class MoveCursor {
   /** To the child that holds the whole cube, or the center if the cube is a voxel. */
   bool descend() {
     const Bounds b = bounds();
-    const Eigen::Vector3d middle = m_nodeCell.lowest().cast<double>().matrix() +
+    const Eigen::Vector3d middle = m_nodeCell.lowest.cast<double>().matrix() +
                                    Eigen::Vector3d::Constant(m_nodeCell.edge() / 2);
     const auto low = (b.min().array() >= middle.array()).eval();
     const auto high = (b.max().array() > middle.array()).eval();
@@ -223,15 +223,15 @@ class MoveCursor {
     const double half = m_cell.depth == kTreeDepth ? 0 : m_cell.edge() / 2.0;
     const Eigen::Vector3d center =
         m_move.T_old_new *
-        (m_cell.lowest().cast<double>().matrix() + Eigen::Vector3d::Constant(m_cell.edge() / 2.0));
+        (m_cell.lowest.cast<double>().matrix() + Eigen::Vector3d::Constant(m_cell.edge() / 2.0));
     const Eigen::Vector3d reach = m_move.absoluteRotation * Eigen::Vector3d::Constant(half);
     return {center - reach, center + reach};
   }
 
   const Move& m_move;
-  Cell m_cell;
+  Cube m_cell;
   Node m_node;
-  Cell m_nodeCell;
+  Cube m_nodeCell;
 };
 
 /** A pose in meters as one in keys. */

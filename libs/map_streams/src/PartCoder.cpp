@@ -106,25 +106,24 @@ class PartFormat {
 
   void code(StreamLeaf& leaf) {
     const std::size_t context = m_kindBefore + 3 * m_wasOctet;
-    bool isNone = leaf.kind == StreamLeaf::Kind::None,
-         hasRecord = leaf.kind == StreamLeaf::Kind::WithRecord;
+    bool isNone = !leaf, hasRecord = leaf && leaf->record;
     bit(kIsNone + context, isNone);
     if (!isNone) bit(kHasRecord + context, hasRecord);
-    leaf.kind = isNone      ? StreamLeaf::Kind::None
-                : hasRecord ? StreamLeaf::Kind::WithRecord
-                            : StreamLeaf::Kind::Plain;
-    m_kindBefore = static_cast<std::size_t>(leaf.kind);
-    if (leaf.kind == StreamLeaf::Kind::Plain)
-      m_plainBefore = std::min<std::size_t>(
-          3, code(kPlain + 256 * m_plainBefore, m_tables.m_plain, leaf.value));
-    if (leaf.kind == StreamLeaf::Kind::WithRecord) codeWithRecord(leaf);
+    m_kindBefore = isNone ? 0 : 1 + hasRecord;
+    if (isNone) return leaf.reset();
+    if (!leaf) leaf.emplace();
+    if (hasRecord && !leaf->record) leaf->record.emplace();
+    if (hasRecord) return codeWithRecord(*leaf);
+    leaf->record.reset();
+    m_plainBefore =
+        std::min<std::size_t>(3, code(kPlain + 256 * m_plainBefore, m_tables.m_plain, leaf->value));
   }
 
-  void codeWithRecord(StreamLeaf& leaf) {
+  void codeWithRecord(LeafContent& leaf) {
     bool isSame = leaf == m_before;
     bit(kSameRecord + m_wasSame, isSame);
     m_wasSame = isSame;
-    if (isSame && m_before.kind != StreamLeaf::Kind::WithRecord) fail();
+    if (isSame && !m_before.record) fail();
     if (isSame) {
       leaf = m_before;
       return;
@@ -139,7 +138,7 @@ class PartFormat {
       if (number >= records.size()) fail();
       leaf = records[number];
     } else {
-      codeRecord(leaf.record);
+      codeRecord(*leaf.record);
       codeValue(leaf);
     }
     m_before = leaf;
@@ -160,7 +159,7 @@ class PartFormat {
   }
 
   void codeClasses(ClassRecord& record) {
-    const ClassRecord& before = m_before.record;
+    const ClassRecord before = m_before.record.value_or(ClassRecord{});
     bool same = before.count == record.count && std::equal(record.ids, record.ids + 3, before.ids);
     bit(kSameClasses, same);
     if (same && before.count != record.count) fail();
@@ -171,9 +170,9 @@ class PartFormat {
     }
   }
 
-  void codeValue(StreamLeaf& leaf) {
+  void codeValue(LeafContent& leaf) {
     const Units expected =
-        toUnits(onGrid(leaf.record.belief().occupancyLogOdds(m_tables.m_numClasses)));
+        toUnits(onGrid(leaf.record->belief().occupancyLogOdds(m_tables.m_numClasses)));
     bool follows = leaf.value == expected;
     bit(kFollows, follows);
     follows ? void(leaf.value = expected) : codeUnits(leaf.value);
@@ -206,7 +205,7 @@ class PartFormat {
   std::uint64_t m_root = 0;
   bool m_wasOctet = false, m_wasSame = false;
   std::size_t m_kindBefore = 0, m_plainBefore = 0;
-  StreamLeaf m_before;
+  LeafContent m_before;  ///< the last one with a record
 };
 
 constexpr std::size_t kMaxFrequent = 255;
@@ -215,8 +214,8 @@ constexpr std::size_t kNumContexts = PartFormat<BitCounter>::kNumContexts;
 namespace {
 
 struct ByBytes {
-  bool operator()(const StreamLeaf& a, const StreamLeaf& b) const {
-    const int order = std::memcmp(&a.record, &b.record, sizeof(a.record));
+  bool operator()(const LeafContent& a, const LeafContent& b) const {
+    const int order = std::memcmp(&*a.record, &*b.record, sizeof(ClassRecord));
     return order != 0 ? order < 0 : a.value < b.value;
   }
 };
@@ -238,19 +237,18 @@ std::vector<T> mostFrequent(const std::map<T, std::size_t, Less>& counts, std::s
 /** How often what is said. */
 struct LeafCounts {
   std::map<Units, std::size_t, std::less<Units>> plain, rests, differences;
-  std::map<StreamLeaf, std::size_t, ByBytes> records;
+  std::map<LeafContent, std::size_t, ByBytes> records;
 
   void add(const TreePart& part) {
     for (int i = 0; i < 8; ++i)
-      if (part.mask >> i & 1) add(part.leaves[i]);
+      if (part.mask >> i & 1 && part.leaves[i]) add(*part.leaves[i]);
   }
-  void add(const StreamLeaf& leaf) {
-    if (leaf.kind == StreamLeaf::Kind::Plain) ++plain[leaf.value];
-    if (leaf.kind != StreamLeaf::Kind::WithRecord) return;
+  void add(const LeafContent& leaf) {
+    if (!leaf.record) return void(++plain[leaf.value]);
     ++records[leaf];
-    ++rests[leaf.record.rest];
-    for (int c = 0; c < leaf.record.count; ++c)
-      ++differences[static_cast<Units>(leaf.record.logOdds[c] - leaf.record.rest)];
+    ++rests[leaf.record->rest];
+    for (int c = 0; c < leaf.record->count; ++c)
+      ++differences[static_cast<Units>(leaf.record->logOdds[c] - leaf.record->rest)];
   }
 };
 
@@ -313,8 +311,8 @@ std::string PartCoder::toText() const {
   writer.list(m_rests);
   writer.list(m_differences);
   writer.value(static_cast<std::uint8_t>(m_records.size()));
-  for (const StreamLeaf& leaf : m_records) {
-    writer.value(leaf.record);
+  for (const LeafContent& leaf : m_records) {
+    writer.value(*leaf.record);
     writer.value(leaf.value);
   }
   for (const std::uint16_t model : m_models) writer.value(static_cast<std::uint8_t>(model >> 3));
@@ -324,13 +322,14 @@ std::string PartCoder::toText() const {
 /** As if each were told anew: what cannot be is refused. */
 void PartCoder::checkRecords() const {
   const PartCoder plain(m_numClasses, m_rootDepth);
-  for (const StreamLeaf& leaf : m_records) {
+  for (const LeafContent& leaf : m_records) {
     BitCounter unused(kNumContexts);
     PartFormat<BitCounter> format(plain, unused);
     TreePart part;
     part.leaves[0] = leaf;
     format.code(part);
-    if (part.leaves[0] != leaf) throw std::runtime_error("altered: a class record that cannot be");
+    if (!(part.leaves[0] == leaf))
+      throw std::runtime_error("altered: a class record that cannot be");
   }
 }
 
@@ -339,10 +338,9 @@ void PartCoder::fromText(const std::string& text) {
   reader.list(m_plain);
   reader.list(m_rests);
   reader.list(m_differences);
-  m_records.assign(reader.take<std::uint8_t>(), StreamLeaf());
-  for (StreamLeaf& leaf : m_records) {
-    leaf.kind = StreamLeaf::Kind::WithRecord;
-    reader.value(leaf.record);
+  m_records.assign(reader.take<std::uint8_t>(), LeafContent());
+  for (LeafContent& leaf : m_records) {
+    reader.value(leaf.record.emplace());
     reader.value(leaf.value);
   }
   checkRecords();

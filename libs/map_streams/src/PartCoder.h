@@ -171,7 +171,7 @@ class PartCoder {
   int m_numClasses, m_rootDepth;
   /** By frequency, at most 255 of each. */
   std::vector<Units> m_plain, m_rests, m_differences;
-  std::vector<StreamLeaf> m_records;
+  std::vector<LeafContent> m_records;
   BitModels m_models;
 };
 

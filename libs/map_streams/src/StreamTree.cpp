@@ -65,27 +65,13 @@ CellPath CellPath::of(const Cube& cube) {
   return cell;
 }
 
-StreamLeaf StreamLeaf::of(const LeafContent& content) {
-  StreamLeaf leaf;
-  leaf.kind = content.record ? Kind::WithRecord : Kind::Plain;
-  leaf.value = content.value;
-  if (content.record) leaf.record = *content.record;
-  return leaf;
-}
-
-LeafContent StreamLeaf::content() const {
-  LeafContent c{value, std::nullopt};
-  if (kind == Kind::WithRecord) c.record = record;
-  return c;
-}
-
 char* putLeaves(char* to, const TreePart& part) {
   for (int i = 0; i < 8; ++i) {
     if (!(part.mask >> i & 1)) continue;
     const StreamLeaf& leaf = part.leaves[i];
-    to = put(to, leaf.kind);
-    if (leaf.kind != StreamLeaf::Kind::None) to = put(to, leaf.value);
-    if (leaf.kind == StreamLeaf::Kind::WithRecord) to = put(to, leaf.record);
+    to = put(to, kindOf(leaf));
+    if (leaf) to = put(to, leaf->value);
+    if (leaf && leaf->record) to = put(to, *leaf->record);
   }
   return to;
 }
@@ -93,10 +79,10 @@ char* putLeaves(char* to, const TreePart& part) {
 void getLeaves(const char* from, TreePart& part) {
   for (int i = 0; i < 8; ++i) {
     if (!(part.mask >> i & 1)) continue;
-    StreamLeaf& leaf = part.leaves[i];
-    from = get(from, leaf.kind);
-    if (leaf.kind != StreamLeaf::Kind::None) from = get(from, leaf.value);
-    if (leaf.kind == StreamLeaf::Kind::WithRecord) from = get(from, leaf.record);
+    std::uint8_t kind = 0;
+    from = get(from, kind);
+    if (kind > 0) from = get(from, part.leaves[i].emplace().value);
+    if (kind > 1) from = get(from, part.leaves[i]->record.emplace());
   }
 }
 
@@ -144,18 +130,16 @@ Slot& StreamTree::makePlace(const CellPath& cell) {
 void StreamTree::setLeaf(Slot& slot, const CellPath& cell, const StreamLeaf& leaf) {
   if (slot.isInner() && isNewInner(cell)) return;
   Slot fresh;
-  if (leaf.kind != StreamLeaf::Kind::None) leaf.content().write(arena(), fresh);
+  if (leaf) leaf->write(arena(), fresh);
   replace(slot, fresh);
 }
 
 void StreamTree::setLeafInBlock(BlockContent& block, const CellPath& cell, const StreamLeaf& leaf) {
-  const LeafContent content = leaf.content();
-  const bool isKnown = leaf.kind != StreamLeaf::Kind::None;
   const int octant = cell.childAt(Block::kDepth + 1);
   if (cell.depth == Block::kDepth + 1) {
     if (isInnerOctant(block, octant) && isNewInner(cell)) return;
     clearOctant(block, octant);
-    if (isKnown) block.setLeafOctant(octant, content.value, content.recordOrNull());
+    if (leaf) block.setLeafOctant(octant, leaf->value, leaf->recordOrNull());
     return;
   }
   if (block.leafOctants >> octant & 1) splitOctant(block, octant);
@@ -163,7 +147,7 @@ void StreamTree::setLeafInBlock(BlockContent& block, const CellPath& cell, const
   block.known &= ~(VoxelBits(1) << voxel);
   block.recorded &= ~(VoxelBits(1) << voxel);
   block.values[voxel] = kUnknown;
-  if (isKnown) block.setVoxel(voxel, content.value, content.recordOrNull());
+  if (leaf) block.setVoxel(voxel, leaf->value, leaf->recordOrNull());
 }
 
 void StreamTree::changeBlock(Slot& slot, const TreePart& part) {

@@ -1,10 +1,11 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_octree/store/Cell.h>
+#include <semantic_octree/store/Cubes.h>
 #include <semantic_octree/store/LeafContent.h>
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <set>
 
 namespace semantic_octree {
@@ -32,19 +33,11 @@ struct CellPath {
 };
 
 /** A leaf as it travels, or no node. */
-struct StreamLeaf {
-  enum class Kind : std::uint8_t { None, Plain, WithRecord };
-  ClassRecord record{};
-  Units value = 0;
-  Kind kind = Kind::None;
-
-  static StreamLeaf of(const LeafContent& content);
-  LeafContent content() const;
-  bool operator==(const StreamLeaf& o) const {
-    return kind == o.kind && value == o.value && record == o.record;
-  }
-  bool operator!=(const StreamLeaf& o) const { return !(*this == o); }
-};
+using StreamLeaf = std::optional<LeafContent>;
+/** No node, a leaf without a class record, one with it. */
+inline std::uint8_t kindOf(const StreamLeaf& leaf) {
+  return static_cast<std::uint8_t>(leaf ? 1 + leaf->record.has_value() : 0);
+}
 
 /** What is said of a cube at once. */
 struct TreePart {

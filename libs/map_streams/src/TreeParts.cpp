@@ -44,13 +44,13 @@ class Steps {
 
   std::size_t of(const CellPath& cell) {
     while (m_next + 1 < m_tau.size() && cellOf(m_next) < cell) ++m_next;
-    return m_steps.stepOf(m_tau[m_next]);
+    return m_steps.treeOf(m_tau[m_next]);
   }
-  const tree_abstraction::AlphaSteps& alphas() const { return m_steps; }
+  const tree_abstraction::AlphaPath& alphas() const { return m_steps; }
 
  private:
   /** Fills m_tau and m_cells, too. */
-  tree_abstraction::AlphaSteps stepsOf(const Abstraction& abstraction) {
+  tree_abstraction::AlphaPath stepsOf(const Abstraction& abstraction) {
     std::vector<double> all;
     abstraction.forEachTau([&](const Abstraction::NodeTau& n) {
       if (n.tau > 0) all.push_back(n.tau);
@@ -70,11 +70,11 @@ class Steps {
   std::vector<double> m_tau;
   std::vector<std::uint64_t> m_cells;  ///< path and depth
   std::size_t m_next = 0;
-  tree_abstraction::AlphaSteps m_steps;
+  tree_abstraction::AlphaPath m_steps;
 };
 
 /** A leaf's needs no classes. */
-StreamLeaf leafOf(const Node& leaf) { return StreamLeaf::of(contentOf(leaf, 0)); }
+StreamLeaf leafOf(const Node& leaf) { return contentOf(leaf, 0); }
 
 /** What a receiver has of a cube. */
 struct Before {
@@ -102,7 +102,7 @@ struct CompressedMap {
 
   bool isInner(const Node& node) const { return node && abstraction.isExpanded(node); }
   StreamLeaf leafOf(const Node& node) const {
-    return node ? StreamLeaf::of(contentOf(node, map.numClasses())) : StreamLeaf();
+    return node ? StreamLeaf(contentOf(node, map.numClasses())) : StreamLeaf();
   }
 };
 
@@ -117,7 +117,7 @@ struct ToldTree {
   }
 
  private:
-  StreamLeaf m_last{{}, 0, StreamLeaf::Kind::Plain};
+  StreamLeaf m_last = LeafContent();
 };
 
 /** What leads to a tree from what was there before. */
@@ -215,7 +215,7 @@ TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before) {
   const Abstraction abstraction(map);
   Steps steps(abstraction);
   TreeParts result;
-  for (std::size_t step = 0; step + 1 < steps.alphas().numSteps(); ++step) {
+  for (std::size_t step = 0; step < steps.alphas().numTrees(); ++step) {
     result.alphas.push_back(steps.alphas().alpha(step));
     result.ties.push_back(steps.alphas().highestAlpha(step));
   }

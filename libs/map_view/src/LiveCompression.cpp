@@ -14,56 +14,43 @@ namespace map_view {
 using semantic_octree::TermCatalog;
 using tree_abstraction::AbstractionWeights;
 using tree_abstraction::InformationTerm;
-using tree_abstraction::kAlpha;
 
 namespace {
 
-/** Whether two terms tell free space and the classes apart in one way. */
-bool sameGroups(const InformationTerm& a, const InformationTerm& b) { return a.groups == b.groups; }
-
 /** In the order in which semantic-map-compress has them, so that sums round alike; the map keeps
  * G-values with them. */
-AbstractionWeights addTerms(SemanticOcTree& map, const Solution& solution,
-                            const AbstractionOptions& space) {
+AbstractionOptions withAllTerms(SemanticOcTree& map, const AbstractionOptions& solution) {
   if (map.empty()) throw std::invalid_argument("the map is empty");
-  Solution all = solution;
-  for (const InformationTerm& term : LiveCompression::allClasses(map).terms) {
-    const auto same = [&](const InformationTerm& t) { return sameGroups(t, term); };
-    if (std::none_of(all.terms.begin(), all.terms.end(), same))
-      all.terms.push_back({term.name, 0, term.groups});
+  AbstractionOptions all = solution.forClasses(map.classes());
+  for (const InformationTerm& term : LiveCompression::allClasses(map).weights.terms) {
+    const auto same = [&](const InformationTerm& t) { return t.groups == term.groups; };
+    if (std::none_of(all.weights.terms.begin(), all.weights.terms.end(), same))
+      all.weights.terms.push_back({term.name, 0, term.groups});
   }
-  AbstractionOptions options = space;
-  options.weights.terms = TermCatalog(map.classes(), {all}).weighedTerms(all, 0);
-  options.weights.alpha = solution.alpha.value_or(kAlpha);
-  setAbstraction(map, options);
-  return options.weights;
+  all.weights.terms = TermCatalog(map.classes(), {all}).weighedTerms(all, 0);
+  setAbstraction(map, all);
+  return all;
 }
 
 }  // namespace
 
-Solution LiveCompression::allClasses(const SemanticOcTree& map) {
+AbstractionOptions LiveCompression::allClasses(const SemanticOcTree& map,
+                                               AbstractionOptions options) {
   std::vector<bool> occurs(std::size_t(map.numClasses()) + 1, false);
   forEachOccupiedLeaf(
       map, [&](const ViewCell& leaf) { occurs[map.query(leaf.node).likeliestClass] = true; });
-  Solution solution;
-  solution.name = "view";
-  solution.alpha = kAlpha;
+  options.name = "view";
   for (int id = 1; id <= map.numClasses(); ++id)
     if (occurs[std::size_t(id)])
-      solution.terms.push_back(
+      options.weights.terms.push_back(
           {map.classes().name(static_cast<semantic_types::ClassId>(id)), 1, {{id}}});
-  return solution;
+  return options;
 }
 
-LiveCompression::LiveCompression(SemanticOcTree& map, const Solution& solution,
-                                 const AbstractionOptions& space)
-    : m_numClasses(map.numClasses()),
-      m_space(space),
-      m_name(solution.name),
-      m_weights(addTerms(map, solution, space)),
-      m_tree(map) {
+LiveCompression::LiveCompression(SemanticOcTree& map, const AbstractionOptions& solution)
+    : m_numClasses(map.numClasses()), m_options(withAllTerms(map, solution)), m_tree(map) {
   dropAbstraction(map);
-  change(m_weights);
+  change(m_options.weights);
   findAlphas();
 }
 
@@ -76,20 +63,20 @@ void LiveCompression::findAlphas() {
 
 void LiveCompression::change(const AbstractionWeights& weights) {
   weights.validate(m_numClasses);
-  m_weights = weights;
-  m_threshold = alpha() + m_weights.eps();
+  m_options.weights = weights;
+  m_threshold = alpha() + m_options.weights.eps();
   m_retained.clear();
 }
 
 void LiveCompression::setWeight(std::size_t term, double weight) {
-  AbstractionWeights weights = m_weights;
+  AbstractionWeights weights = m_options.weights;
   weights.terms.at(term).weight = weight;
   change(weights);
   findAlphas();
 }
 
 void LiveCompression::setAlpha(double alpha) {
-  AbstractionWeights weights = m_weights;
+  AbstractionWeights weights = m_options.weights;
   weights.alpha = alpha;
   change(weights);
 }
@@ -123,8 +110,8 @@ float LiveCompression::retainedAround(InformationTree::Index node) const {
 }
 
 double LiveCompression::lowestAlpha() const {
-  const double lowest = m_tree.lowestAlpha(m_weights.eps());
-  return lowest > m_weights.eps() ? lowest : alpha();
+  const double lowest = m_tree.lowestAlpha(m_options.weights.eps());
+  return lowest > m_options.weights.eps() ? lowest : alpha();
 }
 
 double LiveCompression::highestAlpha() const {
@@ -149,16 +136,14 @@ std::vector<KeyBox> LiveCompression::takeChange() {
   return boxes;
 }
 
-Solution LiveCompression::solution() const {
-  Solution solution;
-  solution.name = m_name;
-  solution.alpha = alpha();
+AbstractionOptions LiveCompression::solution() const {
+  AbstractionOptions solution = m_options;
+  solution.weights.terms.clear();
   for (const InformationTerm& term : terms())
-    if (term.weight != 0) solution.terms.push_back(term);
+    if (term.weight != 0) solution.weights.terms.push_back(term);
   return solution;
 }
 
-using semantic_octree::AbstractionOptions;
 using semantic_octree::Region;
 using semantic_types::ClassTable;
 using strict_files::textOf;
@@ -169,18 +154,18 @@ class Writer {
  public:
   explicit Writer(const ClassTable& classes) : m_classes(classes) {}
 
-  std::string write(const semantic_octree::Solution& solution, AbstractionOptions space) {
+  std::string write(AbstractionOptions solution) {
+    const std::vector<InformationTerm>& terms = solution.weights.terms;
     m_out << YAML::BeginMap;
     pair("name", solution.name);
-    addTerms("relevant", 1, solution.terms);
-    addTerms("irrelevant", -1, solution.terms);
-    for (const InformationTerm& term : solution.terms)
+    addTerms("relevant", 1, terms);
+    addTerms("irrelevant", -1, terms);
+    for (const InformationTerm& term : terms)
       if (term.weight > 0 && isWhole(term)) pair("everything", textOf(term.weight));
-    if (solution.alpha) pair("alpha", textOf(*solution.alpha));
     strict_files::OptionList list;
-    static_cast<semantic_octree::AbstractionSpace&>(space).describe(list);
-    for (const strict_files::Option& option : list.options()) pair(option.name, option.text());
-    addRegions(space.regions);
+    solution.describe(list);
+    for (const char* name : {"alpha", "block_size", "unknown"}) pair(name, list.find(name)->text());
+    addRegions(solution.regions);
     m_out << YAML::EndMap;
     return std::string(m_out.c_str()) + "\n";
   }
@@ -233,12 +218,11 @@ class Writer {
 
 }  // namespace
 
-std::string weightsText(const semantic_octree::Solution& solution, const AbstractionOptions& space,
-                        const ClassTable& classes) {
+std::string weightsText(const AbstractionOptions& solution, const ClassTable& classes) {
   bool weighs = false;
-  for (const InformationTerm& term : solution.terms) weighs = weighs || term.weight != 0;
+  for (const InformationTerm& term : solution.weights.terms) weighs = weighs || term.weight != 0;
   if (!weighs) throw std::invalid_argument("no class has a weight: there is nothing to save");
-  return Writer(classes).write(solution, space);
+  return Writer(classes).write(solution);
 }
 
 }  // namespace map_view

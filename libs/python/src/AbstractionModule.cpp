@@ -17,46 +17,33 @@ namespace python {
 using semantic_octree::Abstraction;
 using semantic_octree::AbstractionOptions;
 using semantic_types::ClassTable;
-using tree_abstraction::InformationTerm;
 namespace fs = std::filesystem;
 
 namespace {
 
-int classNamed(const py::handle& name, const ClassTable& classes) {
-  const auto text = py::str(name).cast<std::string>();
-  if (const auto id = classes.find(text)) return *id;
-  if (text == semantic_octree::kFreeSpace) return 0;
-  refuseClass("weights", text, classes);
-}
-
-InformationTerm termOf(const py::handle& key, double weight, const ClassTable& classes) {
+/** A term by a class, or by a tuple of them. */
+void addTerm(AbstractionOptions& options, const py::handle& key, double weight,
+             const ClassTable& classes) {
   const bool isGroup = py::isinstance<py::tuple>(key);
-  std::vector<int> ids;
+  std::vector<std::string> members;
+  for (const py::handle& part : isGroup ? key.cast<py::tuple>() : py::make_tuple(key))
+    members.push_back(py::str(part).cast<std::string>());
   std::string name;
-  for (const py::handle& part : isGroup ? key.cast<py::tuple>() : py::make_tuple(key)) {
-    ids.push_back(classNamed(part, classes));
-    name += (name.empty() ? "" : "+") + py::str(part).cast<std::string>();
-  }
-  return {name, weight, {ids}};
+  for (const std::string& member : members) name += (name.empty() ? "" : "+") + member;
+  options.add(classes, name, members, weight);
 }
 
 AbstractionOptions optionsOf(const py::object& weights, const std::string& solution,
                              const ClassTable& classes) {
-  AbstractionOptions options;
-  if (isPath(weights)) {
-    const auto file = semantic_octree::loadWeights(weights.cast<fs::path>(), classes);
-    options = file.space;
-    options.weights.terms = file.solution(solution).terms;
-    options.weights.alpha = file.solution(solution).alpha.value_or(tree_abstraction::kAlpha);
-  } else if (py::isinstance<py::dict>(weights)) {
-    for (const auto& [key, weight] : weights.cast<py::dict>()) {
-      if (!PyNumber_Check(weight.ptr()))
-        throw py::value_error("weights: " + py::repr(weight).cast<std::string>() + " is no number");
-      options.weights.terms.push_back(
-          termOf(key, py::float_(py::reinterpret_borrow<py::object>(weight)), classes));
-    }
-  } else {
+  if (isPath(weights))
+    return semantic_octree::loadSolution(weights.cast<fs::path>(), solution, classes);
+  if (!py::isinstance<py::dict>(weights))
     throw py::value_error("weights: expected a file, or a dict of numbers by class");
+  AbstractionOptions options;
+  for (const auto& [key, weight] : weights.cast<py::dict>()) {
+    if (!PyNumber_Check(weight.ptr()))
+      throw py::value_error("weights: " + py::repr(weight).cast<std::string>() + " is no number");
+    addTerm(options, key, py::float_(py::reinterpret_borrow<py::object>(weight)), classes);
   }
   return options;
 }
@@ -134,9 +121,9 @@ class MapAbstraction {
 };
 
 MapAbstraction abstractionOf(std::shared_ptr<SharedMap> map, const py::object& weights,
-                             const std::string& solution, const py::kwargs& space) {
+                             const std::string& solution, const py::kwargs& more) {
   AbstractionOptions options = optionsOf(weights, solution, map->classes());
-  setOptions<semantic_octree::AbstractionSpace>(options, space);
+  setOptions(options, more);
   return {std::move(map), options};
 }
 
@@ -173,7 +160,7 @@ None where there is none to keep.)")
 weights: a dict from classes to numbers, positive: worth keeping, negative: worth dropping; a
   tuple of names counts as one class, "free_space" is one, too. Or a file of weights (YAML).
 solution: which one of the file; empty: the first.
-options: unknown, block_size, frame, as in files.
+options: alpha, block_size, unknown, regions and all others of [abstraction] in .ini files.
 Raises ValueError naming class and value, TypeError naming an option that there is not,
   RuntimeError naming the file and what is wrong.)");
 }

@@ -138,6 +138,13 @@ class CompressedCursor {
   bool m_isLeaf;
 };
 
+void compress(const SemanticOcTree& map, const IsExpanded& isExpanded, SemanticOcTree& compressed) {
+  if (map.empty()) return;
+  TreeBuilder::fill(compressed, CompressedCursor(map.numClasses(), isExpanded, map.root()),
+                    TreeBuilder::Merge::Never);
+  calibrate(map, compressed);
+}
+
 }  // namespace
 
 std::optional<double> AbstractionMeasures::retention(std::size_t term) const {
@@ -146,9 +153,8 @@ std::optional<double> AbstractionMeasures::retention(std::size_t term) const {
 }
 
 void setAbstraction(SemanticOcTree& map, const AbstractionOptions& options) {
-  options.validate(map.numClasses());
-  MapAccess::setObserver(
-      map, std::make_unique<GTree>(options, MapAccess::filter(map), map.getResolution()));
+  MapAccess::setObserver(map, std::make_unique<GTree>(options.forClasses(map.classes()),
+                                                      MapAccess::filter(map), map.getResolution()));
 }
 
 void dropAbstraction(SemanticOcTree& map) { MapAccess::setObserver(map, nullptr); }
@@ -168,12 +174,8 @@ int Abstraction::rootDepth() const {
 bool Abstraction::isExpanded(const Node& node) const { return compressedTree().isExpanded(node); }
 
 std::vector<LeafCell> Abstraction::leaves() const {
-  std::vector<LeafCell> leaves;
-  if (m_map.empty()) return leaves;
-  compressedTree().forEachLeaf(m_map.root(), Cell(), [&](const Node& node, const Cell& cell) {
-    leaves.push_back(leafCell(node, cell));
-  });
-  return leaves;
+  constexpr auto kLast = static_cast<octomap::key_type>(kNumKeys - 1);
+  return leavesIn({0, 0, 0}, {kLast, kLast, kLast}, false);
 }
 
 std::vector<LeafCell> Abstraction::leavesIn(const octomap::OcTreeKey& low,
@@ -182,14 +184,14 @@ std::vector<LeafCell> Abstraction::leavesIn(const octomap::OcTreeKey& low,
   std::vector<LeafCell> leaves;
   if (m_map.empty()) return leaves;
   const VoxelIndex first(low[0], low[1], low[2]), last(high[0], high[1], high[2]);
-  const auto isWanted = [&](const Node& node, const Cell& cell) {
-    const VoxelIndex lowest = cell.lowest();
-    return (!onlyOccupied || node.getLogOdds() > 0) && (lowest <= last).all() &&
-           (lowest + cell.edge() > first).all();
+  const auto isWanted = [&](const Node& node, const Cube& cell) {
+    return (!onlyOccupied || node.getLogOdds() > 0) && (cell.lowest <= last).all() &&
+           (cell.lowest + cell.edge() > first).all();
   };
-  compressedTree().forEachLeaf(
-      m_map.root(), Cell(), isWanted,
-      [&](const Node& node, const Cell& cell) { leaves.push_back(leafCell(node, cell)); });
+  compressedTree().forEachLeaf(m_map.root(), Cube(), isWanted,
+                               [&](const Node& node, const Cube& cell) {
+                                 leaves.push_back({cell, node});
+                               });
   return leaves;
 }
 
@@ -206,30 +208,18 @@ AbstractionMeasures Abstraction::measures() const {
   if (m_map.empty()) return m;
   m.objective = objective();
   for (auto* tree : {&m.full, &m.compressed}) tree->numLeaves = tree->numKnownLeaves = 1;
-  const double total = totalDensity();
-  const auto count = [&](tree_abstraction::TreeMeasures& tree, const InnerNode& n) {
-    const double p = shareOf(n, total);
-    tree.leafEntropy += p * n.splitEntropy;
-    for (std::size_t t = 0; t < numTerms; ++t)
-      tree.information[t] += p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    tree.numKnownLeaves += n.numChildren - 1;
-    tree.numLeaves += (n.cell.depth < m_gTree.blockDepth() ? n.numChildren : 8) - 1;
+  const auto count = [&](tree_abstraction::TreeMeasures& tree, const PathNode& n,
+                         const std::vector<double>& information) {
+    tree.leafEntropy += n.price;
+    for (std::size_t t = 0; t < numTerms; ++t) tree.information[t] += information[t];
+    tree.numKnownLeaves += static_cast<std::size_t>(n.addedLeaves);
+    tree.numLeaves += n.depth < m_gTree.blockDepth() ? static_cast<std::size_t>(n.addedLeaves) : 7;
   };
-  InCompressedTree inCompressed;
-  forEachInner([&](const InnerNode& n) {
-    count(m.full, n);
-    if (inCompressed.visit(n)) count(m.compressed, n);
+  forEachPathNode([&](const PathNode& n, const std::vector<double>& information) {
+    count(m.full, n, information);
+    if (n.isExpanded) count(m.compressed, n, information);
   });
   return m;
-}
-
-double Abstraction::totalDensity() const {
-  const Slot& root = MapAccess::store(m_map).root();
-  return root.isInner() ? compressedTree().state(root)->density : 1.0;
-}
-
-std::vector<double> Abstraction::distribution(const LeafCell& leaf) const {
-  return m_map.distribution(m_map.search(leaf.key(), static_cast<unsigned>(leaf.depth)));
 }
 
 SemanticOcTree Abstraction::compressedMap() const {
@@ -242,12 +232,9 @@ SemanticOcTree Abstraction::emptyCompressedMap() const { return emptyFor(m_map);
 
 void Abstraction::compressTo(SemanticOcTree& compressed) const {
   TreeBuilder::checkTarget(compressed, emptyCompressedMap());
-  if (m_map.empty()) return;
   const CompressedTree tree = compressedTree();
-  const IsExpanded isExpanded = [&tree](const Node& node) { return tree.isExpanded(node); };
-  TreeBuilder::fill(compressed, CompressedCursor(m_map.numClasses(), isExpanded, m_map.root()),
-                    TreeBuilder::Merge::Never);
-  calibrate(m_map, compressed);
+  compress(
+      m_map, [&tree](const Node& node) { return tree.isExpanded(node); }, compressed);
 }
 
 std::shared_ptr<LeafLog> Abstraction::leafLog() const {
@@ -278,7 +265,7 @@ void Abstraction::setWeights(const std::vector<double>& termWeights, double alph
   weights.validate(m_map.numClasses());
   GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setWeights(termWeights, alpha);
-  recomputeAll(worker, MapAccess::store(m_map), MapAccess::store(m_map).root(), Cell());
+  recomputeAll(worker, MapAccess::store(m_map), MapAccess::store(m_map).root(), Cube());
 }
 
 void Abstraction::setRegions(const std::vector<Region>& regions) {
@@ -286,16 +273,13 @@ void Abstraction::setRegions(const std::vector<Region>& regions) {
   const DensityField before = m_gTree.density();
   GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setRegions(regions);
-  worker.recomputeWhereChanged(MapAccess::store(m_map), MapAccess::store(m_map).root(), Cell(),
+  worker.recomputeWhereChanged(MapAccess::store(m_map), MapAccess::store(m_map).root(), Cube(),
                                {before, m_gTree.density()});
 }
 
 SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpanded) {
   SemanticOcTree compressed = emptyFor(map);
-  if (map.empty()) return compressed;
-  TreeBuilder::fill(compressed, CompressedCursor(map.numClasses(), isExpanded, map.root()),
-                    TreeBuilder::Merge::Never);
-  calibrate(map, compressed);
+  compress(map, isExpanded, compressed);
   return compressed;
 }
 

@@ -9,10 +9,7 @@
 
 namespace semantic_octree {
 
-using strict_files::atLeast;
-using strict_files::checkOptions;
 using strict_files::Choices;
-using strict_files::OptionList;
 using strict_files::require;
 
 const Choices<Region::Shape>& choicesOf(Region::Shape) {
@@ -75,25 +72,11 @@ void Region::validate() const {
     require(radius > 0 && std::isfinite(radius), "radius of a region", radius, "a number above 0");
 }
 
-const Choices<AbstractionSpace::Unknown>& choicesOf(AbstractionSpace::Unknown) {
-  using Unknown = AbstractionSpace::Unknown;
+const Choices<AbstractionOptions::Unknown>& choicesOf(AbstractionOptions::Unknown) {
+  using Unknown = AbstractionOptions::Unknown;
   static const Choices<Unknown> choices = {{"own_class", Unknown::OwnClass},
                                            {"uniform", Unknown::Uniform}};
   return choices;
-}
-
-void AbstractionSpace::describe(OptionList& list) {
-  list.add(
-      "block_size", blockSize, "m", atLeast(0),
-      "edge of the blocks inside which unknown space counts, the coarsest cells; 0: no blocks");
-  list.add("unknown", unknown, "",
-           "what unknown space is taken for: a value of its own, or all classes alike");
-}
-
-void AbstractionOptions::validate(int numClasses) const {
-  checkOptions<AbstractionSpace>(*this, "AbstractionOptions");
-  weights.validate(numClasses);
-  for (const Region& region : regions) region.validate();
 }
 
 using tree_abstraction::InformationTerm;
@@ -106,17 +89,17 @@ constexpr std::size_t kMeasuredAtOnce = 25;
 }  // namespace
 
 TermCatalog::TermCatalog(const semantic_types::ClassTable& classes,
-                         const std::vector<Solution>& solutions)
+                         const std::vector<AbstractionOptions>& solutions)
     : m_numClasses(static_cast<std::size_t>(classes.size())) {
   add({kFreeSpace, 0, {{0}}});
   for (int id = 1; id <= classes.size(); ++id)
     add({classes.name(static_cast<semantic_types::ClassId>(id)), 0, {{id}}});
-  for (const Solution& solution : solutions)
-    for (const InformationTerm& term : solution.terms)
+  for (const AbstractionOptions& solution : solutions)
+    for (const InformationTerm& term : solution.weights.terms)
       if (indexOf(term) == size()) add(term);
   std::vector<bool> isWeighed(size(), false);
-  for (const Solution& solution : solutions)
-    for (const InformationTerm& term : solution.terms) isWeighed[indexOf(term)] = true;
+  for (const AbstractionOptions& solution : solutions)
+    for (const InformationTerm& term : solution.weights.terms) isWeighed[indexOf(term)] = true;
   makeBatches(isWeighed);
 }
 
@@ -153,7 +136,7 @@ std::vector<InformationTerm> TermCatalog::terms(std::size_t b) const {
   return terms;
 }
 
-std::vector<InformationTerm> TermCatalog::weighedTerms(const Solution& solution,
+std::vector<InformationTerm> TermCatalog::weighedTerms(const AbstractionOptions& solution,
                                                        std::size_t b) const {
   std::vector<InformationTerm> weighed = terms(b);
   const std::vector<double> weights = this->weights(solution, b);
@@ -161,13 +144,13 @@ std::vector<InformationTerm> TermCatalog::weighedTerms(const Solution& solution,
   return weighed;
 }
 
-std::vector<double> TermCatalog::allWeights(const Solution& solution) const {
+std::vector<double> TermCatalog::allWeights(const AbstractionOptions& solution) const {
   std::vector<double> weights(size(), 0.0);
-  for (const InformationTerm& term : solution.terms) weights[indexOf(term)] += term.weight;
+  for (const InformationTerm& term : solution.weights.terms) weights[indexOf(term)] += term.weight;
   return weights;
 }
 
-std::vector<double> TermCatalog::weights(const Solution& solution, std::size_t b) const {
+std::vector<double> TermCatalog::weights(const AbstractionOptions& solution, std::size_t b) const {
   const std::vector<double> all = allWeights(solution);
   std::vector<double> weights;
   for (const std::size_t t : m_batches[b]) weights.push_back(all[t]);

@@ -2,6 +2,8 @@
 #include <tree_abstraction/AlphaPath.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -78,17 +80,30 @@ AddedToTree Abstraction::forEachTau(const std::function<void(const NodeTau&)>& v
 }
 
 void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
+  const NodeStore& store = MapAccess::store(m_map);
+  GTree::Worker& worker = m_gTree.worker(0);
+  const double total = store.root().isInner() ? compressedTree().state(store.root())->density : 1.0;
   std::vector<double> information(options().weights.terms.size());
-  const double total = totalDensity();
-  InCompressedTree inCompressed;
-  forEachInner([&](const InnerNode& n) {
-    const double p = shareOf(n, total);
+  std::array<bool, kTreeDepth> inCompressed{};  // of the last inner node at each depth
+  const auto tell = [&](const InnerNode& n) {
+    const int depth = n.cell.depth;
+    inCompressed[depth] = n.isExpanded && (depth == 0 || inCompressed[depth - 1]);
+    const double volume = std::ldexp(1.0, -3 * depth),
+                 p = total > 0 ? n.density * volume / total : 0;
     for (std::size_t t = 0; t < information.size(); ++t)
       information[t] = p * n.divergences[m_gTree.layout().positionOf(static_cast<int>(t))];
-    visit({n.cell.cube(), m_gTree.isFreeFrame(n.cell.depth), inCompressed.visit(n), p,
-           p * n.splitEntropy, n.numChildren - 1},
+    visit({n.cell, m_gTree.isFreeFrame(depth), inCompressed[depth], p, p * n.splitEntropy,
+           n.numChildren - 1},
           information);
-  });
+  };
+  const auto walk = [&](const auto& self, const Slot& slot, const Cube& cell) -> void {
+    if (!slot.isInner()) return;
+    store.bring(slot);
+    worker.inspect(store, slot, cell, tell);
+    if (slot.kind == Slot::Kind::Octant)
+      for (int i = 0; i < 8; ++i) self(self, store.octant(slot).slots[i], cell.child(i));
+  };
+  walk(walk, store.root(), Cube());
 }
 
 using tree_abstraction::AlphaPath;
@@ -164,18 +179,21 @@ double AlphaTrees::alpha(std::size_t k) const {
 AlphaTrees::Path AlphaTrees::within(std::size_t k) const {
   const Bin& bin = m_bins.at(k);
   std::vector<double> taus, leaves;
-  const auto add = [&](double tau, double addedLeaves) {
-    taus.push_back(tau);
-    leaves.push_back(addedLeaves);
-  };
-  if (k > 0) add(m_bins[k - 1].lowest, 0);
-  if (k + 1 < m_bins.size()) add(m_bins[k + 1].highest, 0);
+  if (k > 0) taus.push_back(m_bins[k - 1].lowest);
+  if (k + 1 < m_bins.size()) taus.push_back(m_bins[k + 1].highest);
+  const std::size_t numOthers = taus.size();
   m_nodes([&](double tau, const AddedToTree& added) {
-    if (tau <= bin.highest && tau >= bin.lowest) add(tau, added.leaves);
+    if (tau > bin.highest || tau < bin.lowest) return;
+    taus.push_back(tau);
+    leaves.push_back(added.leaves);
   });
-  AlphaPath path(std::move(taus));
-  const std::size_t last = path.numTrees() - (k + 1 < m_bins.size() ? 2 : 1);
-  return {std::move(path), k > 0 ? std::size_t(1) : 0, last, std::move(leaves)};
+  AlphaPath trees(taus);
+  Path path{std::move(trees), k > 0 ? std::size_t(1) : 0, 0, {}};
+  path.last = path.trees.numTrees() - (k + 1 < m_bins.size() ? 2 : 1);
+  path.addedLeaves.resize(path.trees.numTrees());
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+    path.addedLeaves[path.trees.treeOf(taus[numOthers + i])] += leaves[i];
+  return path;
 }
 
 double AlphaTrees::alphaForLeaves(std::size_t wanted) const {
@@ -191,7 +209,10 @@ double AlphaTrees::alphaForLeaves(std::size_t wanted) const {
       lastThat([&](std::size_t i) { return m_trees[i].leaves <= most; }, 0, numTrees());
   if (k + 1 == numTrees()) return alpha(k);
   const Path path = within(k);
-  return path.trees.alpha(path.trees.largestWithin(most - m_trees[k].leaves, path.addedLeaves, 0));
+  std::size_t tree = path.first;
+  double leaves = m_trees[k].leaves;
+  while (tree < path.last && (leaves += path.addedLeaves[tree + 1]) <= most) ++tree;
+  return path.trees.alpha(tree);
 }
 
 double AlphaTrees::largestThat(const std::function<bool(double)>& fits) const {

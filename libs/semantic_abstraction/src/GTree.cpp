@@ -28,11 +28,11 @@ bool areSame(const Region& r, const Region& s) {
 DensityField::DensityField(std::vector<Region> regions, double resolution)
     : m_regions(std::move(regions)), m_resolution(resolution) {}
 
-DensityField::Overlap DensityField::overlap(const Region& region, const Cell& cell) const {
+DensityField::Overlap DensityField::overlap(const Region& region, const Cube& cell) const {
   // Centers of the cell's voxels fill the box center +- reach.
   const double reach = 0.5 * (cell.edge() - 1) * m_resolution;
   const Eigen::Vector3d center =
-      ((cell.lowest() - kKeyOfOrigin).cast<double>() + 0.5 * cell.edge()).matrix() * m_resolution;
+      ((cell.lowest - kKeyOfOrigin).cast<double>() + 0.5 * cell.edge()).matrix() * m_resolution;
   if (region.shape == Region::Shape::Box) {
     const Eigen::Array3d toLow = (center - region.a).array(), toHigh = (region.b - center).array();
     if ((toLow >= reach).all() && (toHigh >= reach).all()) return Overlap::Full;
@@ -47,7 +47,7 @@ DensityField::Overlap DensityField::overlap(const Region& region, const Cell& ce
   return distance - halfDiagonal > region.radius ? Overlap::None : Overlap::Part;
 }
 
-std::optional<double> DensityField::constantInRegions(const Cell& cell) const {
+std::optional<double> DensityField::constantInRegions(const Cube& cell) const {
   double inAll = -1, inPart = -1;  // largest weights
   for (const Region& region : m_regions) {
     const Overlap overlap = this->overlap(region, cell);
@@ -59,7 +59,7 @@ std::optional<double> DensityField::constantInRegions(const Cell& cell) const {
   return inAll < 0 ? 1.0 : inAll;
 }
 
-double DensityField::meanInRegions(const Cell& cell) const {
+double DensityField::meanInRegions(const Cube& cell) const {
   if (const auto density = constantInRegions(cell)) return *density;  // as in all voxels
   double d[8];
   for (int i = 0; i < 8; ++i) d[i] = meanInRegions(cell.child(i));
@@ -78,7 +78,7 @@ DensityChange::DensityChange(const DensityField& before, const DensityField& now
   addMissing(now, before);
 }
 
-bool DensityChange::noneIn(const Cell& cell) const {
+bool DensityChange::noneIn(const Cube& cell) const {
   const auto isOff = [&](const Region& region) {
     return m_moved.overlap(region, cell) == DensityField::Overlap::None;
   };
@@ -230,7 +230,7 @@ NodeSummary GTree::Worker::compute(const Children& children, const EqualDensity&
 }
 
 NodeSummary GTree::Worker::computeOctant(const NodeStore& store, const Slot& inner,
-                                         const Cell& cell, double* row) {
+                                         const Cube& cell, double* row) {
   const Octant& octant = store.octant(inner);
   const EqualDensity equalDensity = m_gTree.equalDensity(cell);
   m_recordRows.release();
@@ -260,7 +260,7 @@ NodeSummary GTree::Worker::computePattern(const OctantPattern& pattern, double d
 }
 
 NodeSummary GTree::Worker::computeOctantOfBlock(const Block& block, int octant,
-                                                const ClassRecord* records, const Cell& cell,
+                                                const ClassRecord* records, const Cube& cell,
                                                 const EqualDensity& blocksDensity, double* row) {
   // In a cell of equal density, its children's is the same.
   const EqualDensity density = blocksDensity ? blocksDensity : m_gTree.equalDensity(cell);
@@ -295,7 +295,7 @@ void GTree::Worker::addPattern(const OctantPattern& pattern, double density, int
 }
 
 void GTree::Worker::addOctant(const Block& block, int octant, const ClassRecord* records,
-                              const Cell& cell, const EqualDensity& blocksDensity, Children& c) {
+                              const Cube& cell, const EqualDensity& blocksDensity, Children& c) {
   const bool isKnown = block.knownIn(octant);
   if (isKnown && !block.isLeafOctant(octant)) {
     const NodeSummary n =
@@ -316,7 +316,7 @@ void GTree::Worker::addOctant(const Block& block, int octant, const ClassRecord*
   if (!blocksDensity) c.densities[octant] = m_gTree.densityOf(isKnown, cell);
 }
 
-NodeSummary GTree::Worker::computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell,
+NodeSummary GTree::Worker::computeBlock(const NodeStore& store, const Slot& inner, const Cube& cell,
                                         double* row) {
   const Block& block = store.block(inner);
   const EqualDensity density = m_gTree.equalDensity(cell);
@@ -339,12 +339,12 @@ NodeSummary GTree::Worker::computeBlock(const NodeStore& store, const Slot& inne
   return compute(c, density, cell.depth, row);
 }
 
-InnerNode GTree::Worker::inspected(const NodeSummary& summary, const Cell& cell, int numChildren,
+InnerNode GTree::Worker::inspected(const NodeSummary& summary, const Cube& cell, int numChildren,
                                    const double* row) const {
   return {summary, cell, numChildren, row, m_divergences.data()};
 }
 
-void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped) {
+void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cube& cell, bool reshaped) {
   const bool isBlock = inner.kind == Slot::Kind::Block;
   InnerState& s = *store.state<InnerState>(inner);
   const NodeSummary n = isBlock ? computeBlock(store, inner, cell, s.row())
@@ -373,7 +373,7 @@ void GTree::Worker::noteChildren(const NodeStore& store, const Slot& inner, Inne
   s.childKinds = static_cast<std::uint16_t>(kinds);
 }
 
-bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,
+bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Slot& slot, const Cube& cell,
                                           const DensityChange& change) {
   if (change.noneIn(cell)) return false;
   if (slot.isKnown() && !slot.isInner()) return true;

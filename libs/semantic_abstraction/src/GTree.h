@@ -1,7 +1,7 @@
 #pragma once
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_octree/ClassFilter.h>
-#include <semantic_octree/store/Cell.h>
+#include <semantic_octree/store/Cubes.h>
 #include <semantic_octree/store/NodeObserver.h>
 
 #include <algorithm>
@@ -19,18 +19,18 @@ class DensityField {
   DensityField() = default;
   DensityField(std::vector<Region> regions, double resolution);
 
-  double mean(const Cell& cell) const { return m_regions.empty() ? 1.0 : meanInRegions(cell); }
+  double mean(const Cube& cell) const { return m_regions.empty() ? 1.0 : meanInRegions(cell); }
   /** The density of all of the cell, unless a border between densities may cross it. */
-  std::optional<double> constantIn(const Cell& cell) const {
+  std::optional<double> constantIn(const Cube& cell) const {
     return m_regions.empty() ? 1.0 : constantInRegions(cell);
   }
 
  private:
   friend class DensityChange;
   enum class Overlap { None, Part, Full };
-  Overlap overlap(const Region& region, const Cell& cell) const;
-  std::optional<double> constantInRegions(const Cell& cell) const;
-  double meanInRegions(const Cell& cell) const;
+  Overlap overlap(const Region& region, const Cube& cell) const;
+  std::optional<double> constantInRegions(const Cube& cell) const;
+  double meanInRegions(const Cube& cell) const;
 
   std::vector<Region> m_regions;
   double m_resolution = 1;
@@ -44,7 +44,7 @@ class DensityChange {
 
   /** Whether there is none anywhere in a cell, as far as can be told without going to its voxels:
    * true is certain. */
-  bool noneIn(const Cell& cell) const;
+  bool noneIn(const Cube& cell) const;
 
  private:
   const DensityField& m_before;
@@ -78,7 +78,7 @@ struct NodeSummary {
 
 /** An inner node that is inspected. */
 struct InnerNode : NodeSummary {
-  Cell cell;
+  Cube cell;
   int numChildren = 0;
   const double* row = nullptr;
   const double* divergences = nullptr;  ///< JS_t, nats, in the layout's order
@@ -117,13 +117,13 @@ class GTree final : public NodeObserver {
   bool unknownCounts(int depth) const { return depth > m_blockDepth; }
   /** The density of a node whose eight children weigh the same, known or not; none if a border
    * between densities may cross it. */
-  std::optional<double> equalDensity(const Cell& cell) const {
+  std::optional<double> equalDensity(const Cube& cell) const {
     if (!unknownCounts(cell.depth + 1)) return {};
     return m_density.constantIn(cell);
   }
   const DensityField& density() const { return m_density; }
   /** The share of a cell without inner nodes. */
-  double densityOf(bool isKnown, const Cell& cell) const {
+  double densityOf(bool isKnown, const Cube& cell) const {
     return isKnown || unknownCounts(cell.depth) ? m_density.mean(cell) : 0.0;
   }
 
@@ -137,14 +137,14 @@ class GTree final : public NodeObserver {
     explicit Worker(const GTree& gTree);
     /** Before the weights change. */
     void forgetGValues() { m_patterns.clear(); }
-    void recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped) override;
+    void recompute(NodeStore& store, Slot& inner, const Cube& cell, bool reshaped) override;
     /** Nodes in whose cell the density is not what it was. \return whether there were any */
-    bool recomputeWhereChanged(NodeStore& store, Slot& slot, const Cell& cell,
+    bool recomputeWhereChanged(NodeStore& store, Slot& slot, const Cube& cell,
                                const DensityChange& change);
     /** Calls f(node) for an inner node that is a slot, then for its octants that are inner nodes if
      * it is a block. */
     template <typename F>
-    void inspect(const NodeStore& store, const Slot& inner, const Cell& cell, const F& f);
+    void inspect(const NodeStore& store, const Slot& inner, const Cube& cell, const F& f);
 
    private:
     /** What a node needs of its eight children. */
@@ -159,10 +159,10 @@ class GTree final : public NodeObserver {
     /** Note in the state whether the children's part in the compressed tree changed. */
     void noteOctants(InnerState& s) const;
     static void noteChildren(const NodeStore& store, const Slot& inner, InnerState& s);
-    NodeSummary computeOctant(const NodeStore& store, const Slot& inner, const Cell& cell,
+    NodeSummary computeOctant(const NodeStore& store, const Slot& inner, const Cube& cell,
                               double* row);
     /** The block's own node, and m_expandedOctants. */
-    NodeSummary computeBlock(const NodeStore& store, const Slot& inner, const Cell& cell,
+    NodeSummary computeBlock(const NodeStore& store, const Slot& inner, const Cube& cell,
                              double* row);
     /** An octant of a block without class records, where the density is equal: its values count,
      * and not where they stand. \param pattern its values in ascending order */
@@ -170,16 +170,16 @@ class GTree final : public NodeObserver {
     /** An octant of a block that is an inner node. \param records the octant's
      * \param blocksDensity if the block has an equal one */
     NodeSummary computeOctantOfBlock(const Block& block, int octant, const ClassRecord* records,
-                                     const Cell& cell, const EqualDensity& blocksDensity,
+                                     const Cube& cell, const EqualDensity& blocksDensity,
                                      double* row);
     /** What a block's node needs of an octant: of one that is a pattern, of any. */
     void addPattern(const OctantPattern& pattern, double density, int octant, Children& c);
-    void addOctant(const Block& block, int octant, const ClassRecord* records, const Cell& cell,
+    void addOctant(const Block& block, int octant, const ClassRecord* records, const Cube& cell,
                    const EqualDensity& blocksDensity, Children& c);
     /** Row, divergences (m_divergences), and the rest. */
     NodeSummary compute(const Children& children, const EqualDensity& equalDensity, int depth,
                         double* row);
-    InnerNode inspected(const NodeSummary& summary, const Cell& cell, int numChildren,
+    InnerNode inspected(const NodeSummary& summary, const Cube& cell, int numChildren,
                         const double* row) const;
     const double* rowOf(const ClassRecord& record);
     const double* rowOf(Units value);
@@ -213,7 +213,7 @@ class GTree final : public NodeObserver {
 };
 
 template <typename F>
-void GTree::Worker::inspect(const NodeStore& store, const Slot& inner, const Cell& cell,
+void GTree::Worker::inspect(const NodeStore& store, const Slot& inner, const Cube& cell,
                             const F& f) {
   double* const row = buffer(kOwn);
   if (inner.kind == Slot::Kind::Octant) {
@@ -231,7 +231,7 @@ void GTree::Worker::inspect(const NodeStore& store, const Slot& inner, const Cel
     if (!block.knownIn(o) || block.isLeafOctant(o)) continue;
     const ClassRecord* records =
         block.recorded ? store.recordsOf(block) + block.rankOfRecord(8 * o) : nullptr;
-    const Cell octant = cell.child(o);
+    const Cube octant = cell.child(o);
     f(inspected(computeOctantOfBlock(block, o, records, octant, density, row), octant,
                 countOf(block.knownIn(o)), row));
   }

@@ -7,30 +7,17 @@
 namespace semantic_octree {
 namespace {
 
-/** A leaf's key and depth, and whether it came. */
-constexpr int kDepthAt = 48, kAddedAt = 63;
+/** A leaf came; otherwise it went. */
+constexpr std::uint64_t kAdded = std::uint64_t(1) << 63;
 
-std::uint64_t pack(const Cell& leaf, bool isAdded) {
-  const octomap::OcTreeKey key = leaf.key();
-  return std::uint64_t(isAdded) << kAddedAt | std::uint64_t(leaf.depth) << kDepthAt |
-         std::uint64_t(key[2]) << 32 | std::uint64_t(key[1]) << 16 | key[0];
-}
-
-bool isAdded(std::uint64_t packed) { return packed >> kAddedAt; }
-std::uint64_t leafOf(std::uint64_t packed) { return packed << 1 >> 1; }
-
-LeafCell unpack(std::uint64_t packed) {
-  const auto key = [packed](int at) { return static_cast<octomap::key_type>(packed >> at); };
-  return {Cube::around({key(0), key(16), key(32)}, static_cast<int>(leafOf(packed) >> kDepthAt)),
-          {}};
-}
+std::uint64_t leafOf(std::uint64_t entry) { return entry & ~kAdded; }
 
 }  // namespace
 
 void LeafLog::update(const NodeStore& store, const GTree& gTree, const Node& root) {
   m_notes = isRead();
-  if (root) return update(CompressedTree(store, gTree), m_root, root, Cell());
-  remove(m_root, Cell());
+  if (root) return update(CompressedTree(store, gTree), m_root, root, Cube());
+  remove(m_root, Cube());
   m_root = kNone;
 }
 
@@ -38,7 +25,7 @@ TreeChange LeafLog::everything() const {
   TreeChange change;
   change.all = true;
   change.added.reserve(m_numLeaves);
-  addLeaves(m_root, Cell(), change.added);
+  addLeaves(m_root, Cube(), change.added);
   return change;
 }
 
@@ -52,13 +39,13 @@ TreeChange LeafLog::since(const Place& place) {
     const auto ofNext = std::find_if(
         it, entries.end(), [&](std::uint64_t entry) { return leafOf(entry) != leafOf(*it); });
     if ((ofNext - it) % 2 == 1)
-      (isAdded(*it) ? change.added : change.removed).push_back(unpack(*it));
+      (*it & kAdded ? change.added : change.removed).push_back({unpacked(leafOf(*it)), {}});
     it = ofNext;
   }
   return change;
 }
 
-void LeafLog::update(const CompressedTree& tree, Index& told, const Node& node, const Cell& cell) {
+void LeafLog::update(const CompressedTree& tree, Index& told, const Node& node, const Cube& cell) {
   if (!tree.isExpanded(node) && !tree.isSplitAbove(node, cell)) return becomeLeaf(told, cell);
   const bool wasInner = told >= kFirstInner;
   const bool hasState = !node.isLeaf() && NodeStore::octantOf(node) < 0;
@@ -73,7 +60,7 @@ void LeafLog::update(const CompressedTree& tree, Index& told, const Node& node, 
 }
 
 void LeafLog::updateChildren(const CompressedTree& tree, Index& told, const Node& node,
-                             const Cell& cell) {
+                             const Cube& cell) {
   for (int i = 0; i < 8; ++i) {
     Index below = m_inner[told - kFirstInner][i];
     if (node.isLeaf()) {  // a leaf of the map above the blocks stands for each of its parts
@@ -88,7 +75,7 @@ void LeafLog::updateChildren(const CompressedTree& tree, Index& told, const Node
   }
 }
 
-void LeafLog::becomeLeaf(Index& told, const Cell& cell) {
+void LeafLog::becomeLeaf(Index& told, const Cube& cell) {
   if (told == kLeaf) return;
   remove(told, cell);
   told = kLeaf;
@@ -96,7 +83,7 @@ void LeafLog::becomeLeaf(Index& told, const Cell& cell) {
   note(cell, true);
 }
 
-void LeafLog::remove(Index told, const Cell& cell) {
+void LeafLog::remove(Index told, const Cube& cell) {
   if (told == kNone) return;
   if (told == kLeaf) {
     --m_numLeaves;
@@ -106,8 +93,8 @@ void LeafLog::remove(Index told, const Cell& cell) {
   m_free.push_back(told);
 }
 
-void LeafLog::note(const Cell& leaf, bool isAdded) {
-  if (m_notes) push(pack(leaf, isAdded));
+void LeafLog::note(const Cube& leaf, bool isAdded) {
+  if (m_notes) push(packed(leaf) | (isAdded ? kAdded : 0));
 }
 
 LeafLog::Index LeafLog::newInner() {
@@ -121,8 +108,8 @@ LeafLog::Index LeafLog::newInner() {
   return index;
 }
 
-void LeafLog::addLeaves(Index told, const Cell& cell, std::vector<LeafCell>& leaves) const {
-  if (told == kLeaf) leaves.push_back(leafCell(Node(), cell));
+void LeafLog::addLeaves(Index told, const Cube& cell, std::vector<LeafCell>& leaves) const {
+  if (told == kLeaf) leaves.push_back({cell, {}});
   if (told < kFirstInner) return;
   for (int i = 0; i < 8; ++i) addLeaves(m_inner[told - kFirstInner][i], cell.child(i), leaves);
 }

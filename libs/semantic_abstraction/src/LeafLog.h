@@ -23,14 +23,14 @@ class LeafLog : public ChangeLog<std::uint64_t> {
   using Index = std::uint32_t;
   static constexpr Index kNone = 0, kLeaf = 1, kFirstInner = 2;
 
-  void update(const CompressedTree& tree, Index& told, const Node& node, const Cell& cell);
-  void updateChildren(const CompressedTree& tree, Index& told, const Node& node, const Cell& cell);
-  void becomeLeaf(Index& told, const Cell& cell);
+  void update(const CompressedTree& tree, Index& told, const Node& node, const Cube& cell);
+  void updateChildren(const CompressedTree& tree, Index& told, const Node& node, const Cube& cell);
+  void becomeLeaf(Index& told, const Cube& cell);
   /** Forgets a subtree. */
-  void remove(Index told, const Cell& cell);
-  void note(const Cell& leaf, bool isAdded);
+  void remove(Index told, const Cube& cell);
+  void note(const Cube& leaf, bool isAdded);
   Index newInner();
-  void addLeaves(Index told, const Cell& cell, std::vector<LeafCell>& leaves) const;
+  void addLeaves(Index told, const Cube& cell, std::vector<LeafCell>& leaves) const;
 
   Index m_root = kNone;
   std::size_t m_numLeaves = 0;

@@ -1,7 +1,7 @@
 #pragma once
 #include <semantic_abstraction/AbstractionOptions.h>
-#include <semantic_octree/store/Cell.h>
 #include <semantic_octree/store/ClassRecord.h>
+#include <semantic_octree/store/Cubes.h>
 #include <tree_abstraction/AbstractionWeights.h>
 
 #include <cstdint>

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace semantic_octree {
@@ -26,62 +27,39 @@ using NamedNumbers = std::vector<std::pair<std::string, double>>;
 
 namespace {
 
-/** The terms of a solution by the names of classes, for every form in which weights are written.
- * All functions throw std::invalid_argument saying what is wrong. */
-class TermList {
- public:
-  explicit TermList(const ClassTable& classes) : m_classes(classes) {}
+std::string nameOf(int id, const ClassTable& classes) {
+  return id == 0 ? kFreeSpace : classes.name(static_cast<ClassId>(id));
+}
 
-  /** Several members count as one. \param weight below 0 where they are irrelevant */
-  void add(const std::string& name, const std::vector<std::string>& members, double weight) {
-    std::set<int> ids;
-    for (const std::string& member : members)
-      if (!ids.insert(idOf(member)).second)
-        throw std::invalid_argument("'" + member + "' twice in '" + name + "'");
-    for (const InformationTerm& other : m_terms)
-      if (other.name == name)
-        throw std::invalid_argument(
-            "'" + name + "' " +
-            (other.weight * weight < 0 ? "is both relevant and irrelevant" : "twice"));
-    m_terms.push_back({name, weight, {{ids.begin(), ids.end()}}});
-  }
-  void addEverything(double weight) {
-    m_terms.push_back(tree_abstraction::wholeClassVariable("everything", weight, m_classes.size()));
-  }
-  /** All of them. Groups may bring a class in a second time, with the other sign. */
-  std::vector<InformationTerm> checked() const {
-    std::map<int, std::string> relevant;
-    for (const InformationTerm& term : m_terms)
-      if (term.groups.size() == 1 && term.weight > 0)
-        for (const int id : term.groups.front()) relevant[id] = term.name;
-    for (const InformationTerm& term : m_terms) {
-      if (term.groups.size() != 1 || !(term.weight < 0)) continue;
-      for (const int id : term.groups.front())
-        if (relevant.count(id))
-          throw std::invalid_argument("class '" + nameOf(id) + "' is both relevant ('" +
-                                      relevant[id] + "') and irrelevant ('" + term.name + "')");
-    }
-    return m_terms;
-  }
+/** The class with this name, 0 for free space. */
+int idOf(const std::string& name, const ClassTable& classes) {
+  if (const auto id = classes.find(name)) return *id;
+  if (name == kFreeSpace) return 0;
+  std::vector<std::string> known;
+  for (int id = 0; id <= classes.size(); ++id) known.push_back(nameOf(id, classes));
+  throw std::invalid_argument("unknown class '" + name + "'; known are " +
+                              strict_files::joined(known) + strict_files::didYouMean(name, known));
+}
 
- private:
-  /** The class with this name, 0 for free space. */
-  int idOf(const std::string& name) const {
-    if (const auto id = m_classes.find(name)) return *id;
-    if (name == kFreeSpace) return 0;
-    std::vector<std::string> known;
-    for (int id = 0; id <= m_classes.size(); ++id) known.push_back(nameOf(id));
-    throw std::invalid_argument("unknown class '" + name + "'; known are " +
-                                strict_files::joined(known) +
-                                strict_files::didYouMean(name, known));
+/** Groups may bring a class in a second time, with the other sign.
+ * \throw std::invalid_argument naming it. */
+void checkSigns(const std::vector<InformationTerm>& terms, const ClassTable& classes) {
+  std::map<int, std::string> relevant;
+  for (const InformationTerm& term : terms)
+    if (term.groups.size() == 1 && term.weight > 0)
+      for (const int id : term.groups.front()) relevant[id] = term.name;
+  for (const InformationTerm& term : terms) {
+    if (term.groups.size() != 1 || !(term.weight < 0)) continue;
+    for (const int id : term.groups.front())
+      if (relevant.count(id))
+        throw std::invalid_argument("class '" + nameOf(id, classes) + "' is both relevant ('" +
+                                    relevant[id] + "') and irrelevant ('" + term.name + "')");
   }
-  std::string nameOf(int id) const {
-    return id == 0 ? kFreeSpace : m_classes.name(static_cast<ClassId>(id));
-  }
+}
 
-  const ClassTable& m_classes;
-  std::vector<InformationTerm> m_terms;
-};
+InformationTerm everythingOf(double weight, const ClassTable& classes) {
+  return tree_abstraction::wholeClassVariable("everything", weight, classes.size());
+}
 
 const std::set<std::string> kSolutionKeys = {"name", "relevant", "irrelevant", "everything",
                                              "alpha"};
@@ -93,23 +71,23 @@ std::set<std::string> with(std::set<std::string> keys, const std::set<std::strin
 
 class Reader {
  public:
-  Reader(StrictYaml yaml, const ClassTable& classes)
-      : m_yaml(std::move(yaml)), m_classes(classes) {}
+  Reader(StrictYaml yaml, const ClassTable& classes, double alpha)
+      : m_yaml(std::move(yaml)), m_classes(classes) {
+    m_ofAll.weights.alpha = alpha;
+  }
 
-  WeightsFile read(const std::string& name) const {
+  std::vector<AbstractionOptions> read() {
     const YAML::Node& root = m_yaml.root();
     m_yaml.checkMap(root);
-    WeightsFile file;
-    file.name = name;
-    const std::set<std::string> spaceKeys = readSpace(root, file.space);
+    const std::set<std::string> keysOfAll = readOfAll(root);
     if (const YAML::Node list = root["solutions"]) {
-      m_yaml.checkKeys(root, with(spaceKeys, {"solutions"}));
+      m_yaml.checkKeys(root, with(keysOfAll, {"solutions"}));
       m_yaml.checkList(list, "solutions");
-      for (const auto& entry : list) addSolution(entry, kSolutionKeys, file);
+      for (const auto& entry : list) addSolution(entry, kSolutionKeys);
     } else {
-      addSolution(root, with(spaceKeys, kSolutionKeys), file);
+      addSolution(root, with(keysOfAll, kSolutionKeys));
     }
-    return file;
+    return m_solutions;
   }
 
  private:
@@ -123,29 +101,29 @@ class Reader {
     }
   }
 
-  void addSolution(const YAML::Node& node, const std::set<std::string>& keys,
-                   WeightsFile& file) const {
+  void addSolution(const YAML::Node& node, const std::set<std::string>& keys) {
     m_yaml.checkKeys(node, keys);
-    Solution solution = readSolution(node);
-    for (const Solution& other : file.solutions)
+    const AbstractionOptions solution = readSolution(node);
+    for (const AbstractionOptions& other : m_solutions)
       if (other.name == solution.name)
         m_yaml.fail(node["name"], "name: two solutions called '" + other.name + "'");
-    file.solutions.push_back(std::move(solution));
+    m_solutions.push_back(solution);
   }
 
-  Solution readSolution(const YAML::Node& node) const {
-    Solution solution;
+  AbstractionOptions readSolution(const YAML::Node& node) const {
+    AbstractionOptions solution = m_ofAll;
     solution.name = readName(m_yaml.required(node, "name"));
-    TermList terms(m_classes);
-    addTerms(node["relevant"], 1, terms);
-    addTerms(node["irrelevant"], -1, terms);
+    addTerms(node["relevant"], 1, solution);
+    addTerms(node["irrelevant"], -1, solution);
+    std::vector<InformationTerm>& terms = solution.weights.terms;
     if (const YAML::Node weight = node["everything"])
-      terms.addEverything(m_yaml.notNegative(weight, "everything"));
-    solution.terms = at(node, [&] { return terms.checked(); });
-    if (solution.terms.empty())
+      terms.push_back(everythingOf(m_yaml.notNegative(weight, "everything"), m_classes));
+    at(node, [&] { checkSigns(terms, m_classes); });
+    if (terms.empty())
       m_yaml.fail(node, "solution '" + solution.name +
                             "' weighs nothing: expected relevant, irrelevant or everything");
-    if (const YAML::Node alpha = node["alpha"]) solution.alpha = m_yaml.notNegative(alpha, "alpha");
+    if (const YAML::Node alpha = node["alpha"])
+      solution.weights.alpha = m_yaml.notNegative(alpha, "alpha");
     return solution;
   }
 
@@ -159,18 +137,19 @@ class Reader {
     return name;
   }
 
-  void addTerms(const YAML::Node& node, double sign, TermList& terms) const {
+  void addTerms(const YAML::Node& node, double sign, AbstractionOptions& solution) const {
     if (!node) return;
     m_yaml.checkMap(node);
-    for (const auto& entry : node) addTerm(entry.first, entry.second, sign, terms);
+    for (const auto& entry : node) addTerm(entry.first, entry.second, sign, solution);
   }
 
   /** `class: weight` or `group: {classes: [...], weight: ...}` */
-  void addTerm(const YAML::Node& key, const YAML::Node& value, double sign, TermList& terms) const {
+  void addTerm(const YAML::Node& key, const YAML::Node& value, double sign,
+               AbstractionOptions& solution) const {
     const std::string name = key.Scalar(), what = "weight of '" + name + "'";
     if (!value.IsMap()) {
       const double weight = m_yaml.notNegative(value, what);
-      return at(key, [&] { terms.add(name, {name}, sign * weight); });
+      return at(key, [&] { solution.add(m_classes, name, {name}, sign * weight); });
     }
     m_yaml.checkKeys(value, {"classes", "weight"});
     if (name == "everything" || name == kFreeSpace || m_classes.find(name))
@@ -180,27 +159,30 @@ class Reader {
     std::vector<std::string> members;
     for (const auto& member : list) members.push_back(m_yaml.text(member, "a class"));
     const double weight = m_yaml.notNegative(m_yaml.required(value, "weight"), what);
-    at(list, [&] { terms.add(name, members, sign * weight); });
+    at(list, [&] { solution.add(m_classes, name, members, sign * weight); });
   }
 
-  /** \return the keys about it */
-  std::set<std::string> readSpace(const YAML::Node& root, AbstractionOptions& space) const {
+  /** What the file says of all solutions. \return the keys about it */
+  std::set<std::string> readOfAll(const YAML::Node& root) {
     OptionList list;
-    space.describe(list);
+    m_ofAll.describe(list);
+    for (const char* other : {"relevant", "irrelevant", "everything", "alpha", "regions"})
+      list.remove(other);
     m_yaml.read(root, list);
-    std::set<std::string> keys = {"regions"};
-    for (const std::string& name : list.names()) keys.insert(name);
     if (const YAML::Node regions = root["regions"]) {
       m_yaml.checkList(regions, "regions");
       for (const auto& region : regions)
-        space.regions.push_back(
+        m_ofAll.regions.push_back(
             at(region, [&] { return Region::ofText(m_yaml.text(region, "a region")); }));
     }
-    return keys;
+    const std::vector<std::string> names = list.names();
+    return with({"regions"}, {names.begin(), names.end()});
   }
 
   const StrictYaml m_yaml;
   const ClassTable& m_classes;
+  AbstractionOptions m_ofAll;
+  std::vector<AbstractionOptions> m_solutions;
 };
 
 /** The parts of a text between separators, without the spaces around them; no empty ones. */
@@ -248,65 +230,91 @@ NamedNumbers numbersIn(const std::string& option, const std::string& text) {
 
 }  // namespace
 
-const Solution& WeightsFile::solution(const std::string& wanted) const {
+std::vector<AbstractionOptions> loadWeights(const std::filesystem::path& file,
+                                            const ClassTable& classes, double alpha) {
+  return Reader(StrictYaml(file), classes, alpha).read();
+}
+
+std::vector<AbstractionOptions> weightsOfText(const std::string& text, const std::string& name,
+                                              const ClassTable& classes, double alpha) {
+  return Reader(StrictYaml(text, name), classes, alpha).read();
+}
+
+AbstractionOptions solutionIn(const std::vector<AbstractionOptions>& solutions,
+                              const std::string& wanted, const std::string& source) {
   std::vector<std::string> names;
-  for (const Solution& s : solutions) {
+  for (const AbstractionOptions& s : solutions) {
     if (wanted.empty() || s.name == wanted) return s;
     names.push_back(s.name);
   }
-  throw std::runtime_error(name + ": " + strict_files::unknownWord("solution", wanted, names));
+  throw std::runtime_error(source + ": " + strict_files::unknownWord("solution", wanted, names));
 }
 
-WeightsFile loadWeights(const std::filesystem::path& file, const ClassTable& classes) {
-  return Reader(StrictYaml(file), classes).read(file.string());
-}
-
-WeightsFile weightsOfText(const std::string& text, const std::string& name,
-                          const ClassTable& classes) {
-  return Reader(StrictYaml(text, name), classes).read(name);
-}
-
-void AbstractionText::describe(strict_files::OptionList& list) {
+void AbstractionOptions::describe(OptionList& list) {
+  using strict_files::atLeast;
   list.add(
       "relevant", relevant, "",
       "classes worth keeping and their weights, \"road: 1, car+truck: 0.5\"; those joined by + "
       "count as one. Without any weights no abstraction is kept");
   list.add("irrelevant", irrelevant, "", "classes worth dropping, written likewise");
   list.add("everything", everything, "", "weight of telling all classes apart");
-  list.add("alpha", alpha, "", strict_files::atLeast(0), "price of detail, per nat");
-  AbstractionSpace::describe(list);
+  list.add("alpha", weights.alpha, "", atLeast(0), "price of detail, per nat");
   list.add(
-      "regions", regions, "",
+      "block_size", blockSize, "m", atLeast(0),
+      "edge of the blocks inside which unknown space counts, the coarsest cells; 0: no blocks");
+  list.add("unknown", unknown, "",
+           "what unknown space is taken for: a value of its own, or all classes alike");
+  list.add(
+      "regions", regionTexts, "",
       "parts of space of another weight than 1, m: \"box x0 y0 z0 x1 y1 z1 weight; sphere x y z "
       "radius weight; corridor x0 y0 z0 x1 y1 z1 radius weight\"");
 }
 
-AbstractionOptions AbstractionText::forClasses(const ClassTable& classes) const {
-  AbstractionOptions o;
-  static_cast<AbstractionSpace&>(o) = *this;
-  TermList terms(classes);
-  const auto add = [&](const std::string& option, const std::string& text, double sign) {
-    for (const auto& [name, weight] : numbersIn(option, text))
-      named(option, [&, &name = name, &weight = weight] {
-        terms.add(name, split(name, '+'), sign * weight);
-      });
+bool AbstractionOptions::isSet() const {
+  return !relevant.empty() || !irrelevant.empty() || everything != 0 || !weights.terms.empty();
+}
+
+void AbstractionOptions::add(const ClassTable& classes, const std::string& term,
+                             const std::vector<std::string>& members, double weight) {
+  std::set<int> ids;
+  for (const std::string& member : members)
+    if (!ids.insert(idOf(member, classes)).second)
+      throw std::invalid_argument("'" + member + "' twice in '" + term + "'");
+  for (const InformationTerm& other : weights.terms)
+    if (other.name == term)
+      throw std::invalid_argument(
+          "'" + term + "' " +
+          (other.weight * weight < 0 ? "is both relevant and irrelevant" : "twice"));
+  weights.terms.push_back({term, weight, {{ids.begin(), ids.end()}}});
+}
+
+AbstractionOptions AbstractionOptions::forClasses(const ClassTable& classes) const {
+  validate();
+  AbstractionOptions o = *this;
+  const auto take = [&](const std::string& option, std::string& text, double sign) {
+    for (const auto& entry : numbersIn(option, std::exchange(text, "")))
+      named(option,
+            [&] { o.add(classes, entry.first, split(entry.first, '+'), sign * entry.second); });
   };
-  add("relevant", relevant, 1);
-  add("irrelevant", irrelevant, -1);
-  if (everything != 0) terms.addEverything(everything);
-  o.weights.terms = terms.checked();
-  o.weights.alpha = alpha;
-  for (const std::string& text : split(regions, ';'))
-    o.regions.push_back(named("regions", [&] { return Region::ofText(text); }));
-  o.validate(classes.size());
+  o.weights.terms.clear();
+  take("relevant", o.relevant, 1);
+  take("irrelevant", o.irrelevant, -1);
+  if (everything != 0) o.weights.terms.push_back(everythingOf(everything, classes));
+  o.everything = 0;
+  checkSigns(o.weights.terms, classes);
+  for (const InformationTerm& term : weights.terms) o.weights.terms.push_back(term);
+  o.weights.validate(classes.size());
+  for (const std::string& text : split(std::exchange(o.regionTexts, ""), ';'))
+    o.regions.push_back(Region::ofText(text));
   return o;
 }
 
-void AbstractionText::validate() const {
+void AbstractionOptions::validate() const {
   strict_files::checkOptions(*this, "AbstractionOptions");
   numbersIn("relevant", relevant);
   numbersIn("irrelevant", irrelevant);
-  for (const std::string& text : split(regions, ';'))
+  for (const Region& region : regions) region.validate();
+  for (const std::string& text : split(regionTexts, ';'))
     named("regions", [&] { return Region::ofText(text); });
 }
 

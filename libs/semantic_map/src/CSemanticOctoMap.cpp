@@ -72,7 +72,7 @@ void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
   TAbstractionOptions kept = options;
   try {
     if (options.isSet())
-      semantic_octree::setAbstraction(m_tree, options.forClasses(m_tree.classes()));
+      semantic_octree::setAbstraction(m_tree, options);
     else
       semantic_octree::dropAbstraction(m_tree);
   } catch (...) {  // of a map in a folder none is left where a tile cannot be read
@@ -162,8 +162,7 @@ void CSemanticOctoMap::useFilterOfOptions() {
         "can change only while the map is empty, and not in a folder");
   SemanticOcTree tree(m_tree.getResolution(), m_tree.classes(), insertionOptions.filter);
   tree.setPruning(m_tree.pruning());
-  if (m_abstractionOptions.isSet())
-    semantic_octree::setAbstraction(tree, m_abstractionOptions.forClasses(tree.classes()));
+  if (m_abstractionOptions.isSet()) semantic_octree::setAbstraction(tree, m_abstractionOptions);
   m_tree = std::move(tree);
 }
 

@@ -67,8 +67,7 @@ void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
   ArchiveStreambuf buffer(in);
   std::istream stream(&buffer);
   semantic_octree::SemanticOcTree tree = semantic_octree::readTree(stream);
-  if (abstractions.isSet())
-    semantic_octree::setAbstraction(tree, abstractions.forClasses(tree.classes()));
+  if (abstractions.isSet()) semantic_octree::setAbstraction(tree, abstractions);
 
   m_tree = std::move(tree);
   m_abstractionOptions = abstractions;

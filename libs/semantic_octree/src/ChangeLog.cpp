@@ -8,49 +8,37 @@
 namespace semantic_octree {
 namespace {
 
-constexpr int kDepthAt = 48;  // its bits, above those of the three indices
+/** Packed cubes. */
+using Tiles = std::vector<std::uint64_t>;
 
-std::uint64_t pack(const Cell& cube) {
-  const auto bits = [](int number, int at) { return static_cast<std::uint64_t>(number) << at; };
-  return bits(cube.depth, kDepthAt) | bits(cube.index.z(), 32) | bits(cube.index.y(), 16) |
-         bits(cube.index.x(), 0);
+void addTilesIn(const Cube& cube, Tiles& tiles) {
+  if (cube.depth == kTileDepth) return tiles.push_back(packed(cube));
+  for (int i = 0; i < 8; ++i) addTilesIn(cube.child(i), tiles);
 }
 
-int index(std::uint64_t packed, int at) { return static_cast<int>(packed >> at & 0xffff); }
+/** The tiles that a node's leaves are in. */
+void addTilesOf(const Node& node, const Cube& cube, Tiles& tiles) {
+  if (node.isLeaf() || cube.depth == kTileDepth) return addTilesIn(cube, tiles);
+  for (int i = 0; i < 8; ++i)
+    if (const Node child = node.child(i)) addTilesOf(child, cube.child(i), tiles);
+}
 
-octomap::OcTreeKey lowestKey(std::uint64_t packed) {
-  const auto key = [packed](int at) {
-    return static_cast<octomap::key_type>(index(packed, at) * edgeAtDepth(kTileDepth));
-  };
-  return octomap::OcTreeKey(key(0), key(16), key(32));
+/** Each once, sorted. */
+std::vector<octomap::OcTreeKey> keysOf(Tiles tiles) {
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  std::vector<octomap::OcTreeKey> keys;
+  keys.reserve(tiles.size());
+  for (const std::uint64_t tile : tiles) {
+    const VoxelIndex lowest = unpacked(tile).lowest;
+    keys.push_back(octomapKey(lowest.x(), lowest.y(), lowest.z()));
+  }
+  return keys;
 }
 
 }  // namespace
 
-void TileLog::add(const Cell& cube) { push(pack(cube)); }
-
-void TileList::add(std::uint64_t cube) {
-  addAll({VoxelIndex(index(cube, 0), index(cube, 16), index(cube, 32)), index(cube, kDepthAt)});
-}
-
-void TileList::add(const SemanticOcTreeNode& node, const Cell& cell) {
-  if (node.isLeaf() || cell.depth == kTileDepth) return addAll(cell);
-  for (int i = 0; i < 8; ++i)
-    if (const SemanticOcTreeNode child = node.child(i)) add(child, cell.child(i));
-}
-
-void TileList::addAll(const Cell& cube) {
-  if (cube.depth == kTileDepth) return m_tiles.push_back(pack(cube));
-  for (int i = 0; i < 8; ++i) addAll(cube.child(i));
-}
-
-std::vector<octomap::OcTreeKey> TileList::keys() {
-  std::sort(m_tiles.begin(), m_tiles.end());
-  m_tiles.erase(std::unique(m_tiles.begin(), m_tiles.end()), m_tiles.end());
-  std::vector<octomap::OcTreeKey> keys(m_tiles.size());
-  std::transform(m_tiles.begin(), m_tiles.end(), keys.begin(), lowestKey);
-  return keys;
-}
+void TileLog::add(const Cube& cube) { push(packed(cube)); }
 
 struct MapFollower::Content {
   FollowedMap map;
@@ -72,12 +60,12 @@ MapFollower SemanticOcTree::follow() {
 TileChange MapFollower::tiles() {
   const SemanticOcTree& map = m->map.get();
   TileLog::Place& place = m->placeNow();
-  TileList list;
+  Tiles tiles;
   if (!place.isLost())
-    for (const std::uint64_t cube : place) list.add(cube);
+    for (const std::uint64_t cube : place) addTilesIn(unpacked(cube), tiles);
   else if (!map.empty())
-    list.add(map.root(), Cell());
-  TileChange change{place.isLost(), list.keys()};
+    addTilesOf(map.root(), Cube(), tiles);
+  TileChange change{place.isLost(), keysOf(std::move(tiles))};
   place.moveToEnd();
   return change;
 }

@@ -54,13 +54,13 @@ class Sweep {
   }
 
   void decayAll() {
-    decay(m_store.root(), Cell());
+    decay(m_store.root(), Cube());
     m_nodes.tellNoted();
   }
 
  private:
   /** \return whether anything changed */
-  bool decay(Slot& slot, const Cell& cell) {
+  bool decay(Slot& slot, const Cube& cell) {
     const TileSource* const tiles = m_store.tiles();
     if (slot.kind == Slot::Kind::Away && tiles && !tiles->mayHold(slot, m_fading)) return false;
     m_store.bring(slot);
@@ -97,14 +97,14 @@ class Sweep {
     return true;
   }
 
-  bool decayChildren(Slot& slot, const Cell& cell) {
+  bool decayChildren(Slot& slot, const Cube& cell) {
     Octant& octant = m_store.octant(slot);
     bool changed = false;
     for (int i = 0; i < 8; ++i) changed |= decay(octant.slots[i], cell.child(i));
     return changed && finish(slot, cell);
   }
 
-  bool decayBlock(Slot& slot, const Cell& cell) {
+  bool decayBlock(Slot& slot, const Cube& cell) {
     const Block& block = m_store.block(slot);
     if (!anyDecays(block)) return false;
     const BlockContent after = decayed(m_store.contentOf(block));
@@ -142,7 +142,7 @@ class Sweep {
 
   /** A changed node. What was told of a block that was replaced is not known: it counts as
    * reshaped. */
-  bool finish(Slot& inner, const Cell& cell) { return m_nodes.finish(inner, cell, true, true); }
+  bool finish(Slot& inner, const Cube& cell) { return m_nodes.finish(inner, cell, true, true); }
 
   NodeEditor m_nodes;
   NodeStore& m_store;

@@ -31,7 +31,7 @@ void MapAccess::setRule(SemanticOcTree& map, std::shared_ptr<const FusionRule> r
 void MapAccess::setObserver(SemanticOcTree& map, std::unique_ptr<NodeObserver> observer) {
   const bool isInTiles = store(map).tiles();
   auto nodes = storeFor(store(map), observer ? observer->stateBytes() : 0);
-  if (observer && !isInTiles) recomputeAll(observer->worker(0), *nodes, nodes->root(), Cell());
+  if (observer && !isInTiles) recomputeAll(observer->worker(0), *nodes, nodes->root(), Cube());
   std::swap(map.m_observer, observer);
   map.m_store = std::move(nodes);  // first, so that tiles come in where the old nodes were
   if (isInTiles) recomputeTileByTile(map);
@@ -40,7 +40,7 @@ void MapAccess::setObserver(SemanticOcTree& map, std::unique_ptr<NodeObserver> o
 void MapAccess::recomputeTileByTile(SemanticOcTree& map) {
   if (!map.m_observer) return;
   try {
-    recomputeAll(map.m_observer->worker(0), store(map), store(map).root(), Cell());
+    recomputeAll(map.m_observer->worker(0), store(map), store(map).root(), Cube());
   } catch (...) {  // tiles came and went meanwhile: what was cannot be had back
     map.m_observer = nullptr;
     throw;
@@ -111,7 +111,7 @@ ReadLock::ReadLock(const SemanticOcTree& map) : m_store(MapAccess::store(map)) {
 }
 ReadLock::~ReadLock() { m_store.endReading(); }
 
-void recomputeAll(NodeObserver::Worker& worker, NodeStore& store, Slot& slot, const Cell& cell) {
+void recomputeAll(NodeObserver::Worker& worker, NodeStore& store, Slot& slot, const Cube& cell) {
   if (!slot.isInner()) return;
   if (slot.kind == Slot::Kind::Away) return store.bring(slot);  // whoever brings it computes it
   if (slot.kind == Slot::Kind::Octant) {

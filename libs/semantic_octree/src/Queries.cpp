@@ -25,8 +25,8 @@ double addMixture(const SemanticOcTree& tree, const Node& node, double weight,
 }
 
 /** Widens a box (keys, ends included) to all known cells below a node. */
-void addExtent(const Node& node, const Cell& cell, VoxelIndex& low, VoxelIndex& high) {
-  const VoxelIndex first = cell.lowest(), last = first + (cell.edge() - 1);
+void addExtent(const Node& node, const Cube& cell, VoxelIndex& low, VoxelIndex& high) {
+  const VoxelIndex first = cell.lowest, last = first + (cell.edge() - 1);
   if ((first >= low).all() && (last <= high).all()) return;
   if (node.isLeaf()) {
     low = low.min(first);
@@ -148,7 +148,7 @@ octomap::point3d SemanticOcTree::keyToCoord(const octomap::OcTreeKey& key, unsig
 void SemanticOcTree::getMetricMin(double& x, double& y, double& z) const {
   VoxelIndex low = VoxelIndex::Constant(kNumKeys), high = VoxelIndex::Constant(-1);
   if (empty()) return void(x = y = z = 0);
-  addExtent(root(), Cell(), low, high);
+  addExtent(root(), Cube(), low, high);
   x = lowerBorderOf(low.x(), m_resolution);
   y = lowerBorderOf(low.y(), m_resolution);
   z = lowerBorderOf(low.z(), m_resolution);
@@ -157,7 +157,7 @@ void SemanticOcTree::getMetricMin(double& x, double& y, double& z) const {
 void SemanticOcTree::getMetricMax(double& x, double& y, double& z) const {
   VoxelIndex low = VoxelIndex::Constant(kNumKeys), high = VoxelIndex::Constant(-1);
   if (empty()) return void(x = y = z = 0);
-  addExtent(root(), Cell(), low, high);
+  addExtent(root(), Cube(), low, high);
   x = lowerBorderOf(high.x() + 1, m_resolution);
   y = lowerBorderOf(high.y() + 1, m_resolution);
   z = lowerBorderOf(high.z() + 1, m_resolution);

@@ -14,8 +14,8 @@ constexpr int kSharedDepth = 10;
 template <typename F>
 void forEachTouchedChild(const Scan& scan, const ScanCube& cube, F f) {
   for (int i = 0; i < 8; ++i) {
-    const Cell cell = cube.cell.child(i);
-    if (scan.pyramid().at(cube.level() - 1, cell.index).any()) f(i, cell);
+    const Cube cell = cube.cell.child(i);
+    if (scan.pyramid().at(cube.level() - 1, indexOf(cell)).any()) f(i, cell);
   }
 }
 
@@ -33,7 +33,7 @@ bool ScanMerger::merge(const ScanCube& cube) {
   if (cube.level() == 0) return m_nodes.note(cube.cell, mergeTile(cube));
   Octant& octant = childrenOf(*cube.slot);
   bool changed = false;
-  forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
+  forEachTouchedChild(m_scan, cube, [&](int i, const Cube& cell) {
     changed |= merge({&octant.slots[i], cell});
   });
   return m_nodes.finish(*cube.slot, cube.cell, changed, false);
@@ -55,7 +55,7 @@ Octant& ScanMerger::childrenOf(Slot& slot) {
 }
 
 bool ScanMerger::mergeTile(const ScanCube& cube) {
-  const Scan::Tile tile = m_scan.tile(cube.cell.index);
+  const Scan::Tile tile = m_scan.tile(indexOf(cube.cell));
   const auto blockScan = [&](int i) {
     return BlockScan{tile.free[i], tile.hit.words[i], m_scan.votes(), tile.hit.ranks[i]};
   };
@@ -84,7 +84,7 @@ bool ScanMerger::mergeBlock(const ScanCube& cube, const BlockScan& scan) {
 void ScanMerger::collect(const ScanCube& cube, std::vector<ScanCube>& parts) {
   if (cube.cell.depth == kSharedDepth) return parts.push_back(cube);
   Octant& octant = childrenOf(*cube.slot);
-  forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
+  forEachTouchedChild(m_scan, cube, [&](int i, const Cube& cell) {
     collect({&octant.slots[i], cell}, parts);
   });
 }
@@ -94,7 +94,7 @@ bool ScanMerger::finishAbove(const ScanCube& cube, const std::vector<char>& chan
   if (cube.cell.depth == kSharedDepth) return changed[next++];
   Octant& octant = m_nodes.store.octant(*cube.slot);
   bool anyChanged = false;
-  forEachTouchedChild(m_scan, cube, [&](int i, const Cell& cell) {
+  forEachTouchedChild(m_scan, cube, [&](int i, const Cube& cell) {
     anyChanged |= finishAbove({&octant.slots[i], cell}, changed, next);
   });
   return m_nodes.finish(*cube.slot, cube.cell, anyChanged, false);
@@ -104,7 +104,7 @@ void mergeScan(const MergeTarget& target, const Scan& scan, int threads) {
   const auto rule = ruleFor(target, scan);
   std::deque<ScanMerger> mergers;
   for (int i = 0; i < threads; ++i) mergers.emplace_back(target, *rule, scan, i);
-  const ScanCube whole{&target.store.root(), Cell()};
+  const ScanCube whole{&target.store.root(), Cube()};
   std::vector<ScanCube> parts;
   mergers[0].collect(whole, parts);
 

@@ -11,10 +11,10 @@ namespace semantic_octree {
 /** A cube of the scan (see ScanPyramid) and the tree's node for it. */
 struct ScanCube {
   Slot* slot;
-  Cell cell;
+  Cube cell;
 
   int level() const { return ScanPyramid::kTopLevel - cell.depth; }
-  CubeContent content(const Scan& scan) const { return scan.pyramid().at(level(), cell.index); }
+  CubeContent content(const Scan& scan) const { return scan.pyramid().at(level(), indexOf(cell)); }
 };
 
 /** Carries a scan's voxels into a subtree, in one thread.

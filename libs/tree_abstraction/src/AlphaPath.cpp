@@ -9,88 +9,8 @@
 #include <utility>
 
 namespace tree_abstraction {
-namespace {
 
-void requireSize(const std::string& field, std::size_t size, std::size_t expected) {
-  if (size == expected) return;
-  throw std::invalid_argument("AlphaPath: " + std::to_string(size) + " " + field + ", expected " +
-                              std::to_string(expected) + ", one for each node");
-}
-
-void requireCosts(const std::vector<double>& costs) {
-  for (std::size_t i = 0; i < costs.size(); ++i) {
-    if (costs[i] >= 0 && std::isfinite(costs[i])) continue;
-    throw std::invalid_argument("AlphaPath: cost of node " + std::to_string(i) + " is " +
-                                std::to_string(costs[i]) + ", expected a finite number >= 0");
-  }
-}
-
-}  // namespace
-
-AlphaPath::AlphaPath(std::vector<double> tau) : m_tau(std::move(tau)), m_end{0} {
-  std::vector<std::pair<double, std::int32_t>> sorted;  // -tau and index: together in memory
-  for (std::size_t i = 0; i < m_tau.size(); ++i) {
-    if (std::isnan(m_tau[i])) {
-      throw std::invalid_argument("AlphaPath: tau of node " + std::to_string(i) +
-                                  " is not a number");
-    }
-    if (m_tau[i] > 0) sorted.emplace_back(-m_tau[i], static_cast<std::int32_t>(i));
-  }
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t i = 1; i <= sorted.size(); ++i) {
-    m_order.push_back(sorted[i - 1].second);
-    if (i == sorted.size() || !isTie(-sorted[i - 1].first, -sorted[i].first)) m_end.push_back(i);
-  }
-}
-
-double AlphaPath::lowestAlpha(std::size_t k) const {
-  const std::size_t end = m_end.at(k);
-  return end == m_order.size() ? 0.0 : m_tau[static_cast<std::size_t>(m_order[end])];
-}
-
-double AlphaPath::highestAlpha(std::size_t k) const {
-  const std::size_t end = m_end.at(k);
-  return end == 0 ? std::numeric_limits<double>::infinity()
-                  : m_tau[static_cast<std::size_t>(m_order[end - 1])];
-}
-
-double AlphaPath::alpha(std::size_t k) const {
-  return alphaBetween(lowestAlpha(k), highestAlpha(k));
-}
-
-std::vector<char> AlphaPath::expanded(std::size_t k) const {
-  std::vector<char> mask(m_tau.size(), false);
-  for (std::size_t i = 0; i < m_end.at(k); ++i) mask[static_cast<std::size_t>(m_order[i])] = true;
-  return mask;
-}
-
-std::vector<double> AlphaPath::totals(const std::vector<double>& amounts, double base) const {
-  requireSize("amounts", amounts.size(), m_tau.size());
-  std::vector<double> sums{base};
-  double sum = base;
-  for (std::size_t k = 1; k < numTrees(); ++k) {
-    for (std::size_t i = m_end[k - 1]; i < m_end[k]; ++i) {
-      sum += amounts[static_cast<std::size_t>(m_order[i])];
-    }
-    sums.push_back(sum);
-  }
-  return sums;
-}
-
-std::size_t AlphaPath::largestWithin(double budget, const std::vector<double>& costs,
-                                     double base) const {
-  requireCosts(costs);
-  if (!(budget >= base)) {
-    throw std::invalid_argument("AlphaPath: budget is " + std::to_string(budget) +
-                                ", expected at least what the roots alone cost, " +
-                                std::to_string(base));
-  }
-  const auto sums = totals(costs, base);  // ascending
-  const auto beyond = std::upper_bound(sums.begin(), sums.end(), budget);
-  return static_cast<std::size_t>(beyond - sums.begin()) - 1;
-}
-
-AlphaSteps::AlphaSteps(std::vector<double> tau, const std::vector<double>& asked) {
+AlphaPath::AlphaPath(std::vector<double> tau, const std::vector<double>& asked) {
   std::vector<double> wanted(asked);
   std::sort(wanted.begin(), wanted.end(), std::greater<>());
   std::sort(tau.begin(), tau.end(), std::greater<>());
@@ -110,19 +30,14 @@ AlphaSteps::AlphaSteps(std::vector<double> tau, const std::vector<double>& asked
   }
 }
 
-std::size_t AlphaSteps::stepOf(double tau) const {
-  if (!(tau > 0)) return numSteps() - 1;
-  const auto step =
+std::size_t AlphaPath::treeOf(double tau) const {
+  const auto tree =
       std::lower_bound(m_lowest.begin(), m_lowest.end(), tau, std::greater<>());  // not above tau
-  return static_cast<std::size_t>(step - m_lowest.begin()) + 1;
+  return static_cast<std::size_t>(tree - m_lowest.begin()) + 1;
 }
 
-double AlphaSteps::highestAlpha(std::size_t step) const {
-  return step == 0 ? std::numeric_limits<double>::infinity() : m_lowest.at(step - 1);
-}
-
-double AlphaSteps::alpha(std::size_t step) const {
-  return alphaBetween(step == 0 ? m_highest : m_next.at(step - 1), highestAlpha(step));
+double AlphaPath::highestAlpha(std::size_t k) const {
+  return k == 0 ? std::numeric_limits<double>::infinity() : m_lowest.at(k - 1);
 }
 
 namespace {

@@ -14,7 +14,6 @@ namespace map_view {
 using semantic_octree::AbstractionOptions;
 using semantic_octree::Cube;
 using semantic_octree::SemanticOcTree;
-using semantic_octree::Solution;
 
 /** A cube of a map as a view shows it. */
 struct ViewCell : Cube {
@@ -121,17 +120,17 @@ class LiveCompression {
   /** Each class that the map has, free space and what the solution weighs become terms. The map
    * must not change any more, and keeps no G-values. \throw std::invalid_argument bad options, or
    * an empty map. */
-  LiveCompression(SemanticOcTree& map, const Solution& solution, const AbstractionOptions& space);
+  LiveCompression(SemanticOcTree& map, const AbstractionOptions& solution);
 
-  /** All classes that occur in a map, each with weight 1. */
-  static Solution allClasses(const SemanticOcTree& map);
+  /** All classes that occur in a map, each with weight 1. \param options all but the weights */
+  static AbstractionOptions allClasses(const SemanticOcTree& map, AbstractionOptions options = {});
 
   std::size_t numTerms() const { return terms().size(); }
   const std::string& name(std::size_t term) const { return terms()[term].name; }
   /** A whole class variable has no negative weight in files. */
   bool mayBeIrrelevant(std::size_t term) const { return terms()[term].groups.size() == 1; }
   double weight(std::size_t term) const { return terms()[term].weight; }
-  double alpha() const { return m_weights.alpha; }
+  double alpha() const { return m_options.weights.alpha; }
 
   /** \throw std::invalid_argument a class would be relevant and irrelevant; all stays as it was. */
   void setWeight(std::size_t term, double weight);
@@ -170,20 +169,19 @@ class LiveCompression {
   /** Cubes in which leaves came and went since the last call; at first: all. */
   std::vector<KeyBox> takeChange();
 
-  /** Terms with a weight, and alpha. */
-  Solution solution() const;
-  const AbstractionOptions& space() const { return m_space; }
+  /** Without the terms that have no weight. */
+  AbstractionOptions solution() const;
 
  private:
-  const std::vector<tree_abstraction::InformationTerm>& terms() const { return m_weights.terms; }
+  const std::vector<tree_abstraction::InformationTerm>& terms() const {
+    return m_options.weights.terms;
+  }
   /** \throw std::invalid_argument they contradict each other; all stays as it was. */
   void change(const tree_abstraction::AbstractionWeights& weights);
   void findAlphas();
 
   int m_numClasses;
-  AbstractionOptions m_space;
-  std::string m_name;
-  tree_abstraction::AbstractionWeights m_weights;
+  AbstractionOptions m_options;
   InformationTree m_tree;
   double m_threshold = 0;                 ///< alpha, and what counts as a tie
   mutable std::vector<float> m_retained;  ///< in blocks, by node; empty: not asked for yet
@@ -193,8 +191,7 @@ class LiveCompression {
 /** A solution as loadWeights() reads it, to the last bit of its numbers; terms without weight are
  * left out.
  * \throw std::invalid_argument nothing has a weight, or a term is none that files have. */
-std::string weightsText(const semantic_octree::Solution& solution,
-                        const semantic_octree::AbstractionOptions& space,
+std::string weightsText(const AbstractionOptions& solution,
                         const semantic_types::ClassTable& classes);
 
 }  // namespace map_view

@@ -61,7 +61,7 @@ struct TreeChange {
 };
 
 /** A map keeps the class mixtures and G-values of inner nodes from now on: insert() updates them in
- * the same pass. \throw std::invalid_argument bad options. */
+ * the same pass. \throw std::invalid_argument as AbstractionOptions::forClasses(). */
 void setAbstraction(SemanticOcTree& map, const AbstractionOptions& options);
 /** It keeps them no longer. */
 void dropAbstraction(SemanticOcTree& map);
@@ -79,6 +79,7 @@ class Abstraction {
   /** \throw std::logic_error the map keeps no G-values. */
   explicit Abstraction(SemanticOcTree& map);
 
+  /** Without names: see AbstractionOptions::forClasses(). */
   const AbstractionOptions& options() const;
   /** Depth of the cubes from which on nodes have their price: of the blocks where the frame above
    * them is free, otherwise 0. */
@@ -100,18 +101,14 @@ class Abstraction {
   /** Computes all inner nodes anew. */
   AbstractionMeasures measures() const;
 
-  /** Mixture of the known leaves in a cube by volume: K + 1 probabilities, [0] = free. */
-  std::vector<double> distribution(const LeafCell& leaf) const;
-
   /** The compressed tree as a map of its own. A leaf is as occupied as its most occupied voxel
    * (safe for collision checks); its p(class | occupied) is that of the voxels in which labels
    * were seen,
    *
    *     p(class k | occupied) = sum_v p_k(v) / sum_j sum_v p_j(v),
    *
-   * truncated as everywhere. (distribution() and the G-values have the mixture of all known
-   * voxels.) What it states of them has a power of its own where the map is calibrated: mixtures
-   * state too little. */
+   * truncated as everywhere. (The G-values have the mixture of all known voxels.) What it states of
+   * them has a power of its own where the map is calibrated: mixtures state too little. */
   SemanticOcTree compressedMap() const;
   /** \param compressed to be filled, see MapOperations.h; like an emptyCompressedMap()
    * \throw std::invalid_argument it is not empty, or of another kind. */
@@ -157,11 +154,6 @@ class Abstraction {
   CompressedTree compressedTree() const;
   /** Up to date. If that fails, readers are told everything next. */
   std::shared_ptr<LeafLog> leafLog() const;
-  /** p(x) of the whole map, unnormalized. */
-  double totalDensity() const;
-  /** Calls f(InnerNode) for all inner nodes, parents first. */
-  template <typename F>
-  void forEachInner(const F& f) const;
 
   SemanticOcTree& m_map;
   GTree& m_gTree;

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +34,22 @@ struct Region {
 };
 const strict_files::Choices<Region::Shape>& choicesOf(Region::Shape);
 
-/** How the abstraction counts space, whatever its classes. */
-struct AbstractionSpace {
+/** Name of class 0 in files and reports. */
+constexpr const char* kFreeSpace = "free_space";
+
+/** What the optimal abstraction of a semantic octree keeps, however it is said: in a struct, an
+ * .ini file, a file of weights, or Python. */
+struct AbstractionOptions {
+  std::string name;  ///< of a file's solution: letters, digits, '-' and '_', for files are named so
+
+  /** Classes worth keeping and worth dropping by their names, with their weights (beta, gamma),
+   * "road: 1, car: 0.5". Several classes that count as one are joined by "+": "road+parking: 1". */
+  std::string relevant, irrelevant;
+  /** Weight of the whole class variable (which class it is, or free); negative: worth dropping. */
+  double everything = 0;
+  /** Terms over classes 0..K (0 = free space), which come behind those by name, and alpha. */
+  tree_abstraction::AbstractionWeights weights;
+
   /** What is assumed of space without a node. */
   enum class Unknown {
     OwnClass,  ///< a value of its own: no class, not free either
@@ -52,77 +65,51 @@ struct AbstractionSpace {
     Charged  ///< expanded if that pays, as every other node (the paper's)
   };
   Frame frame = Frame::Free;
-
-  void describe(strict_files::OptionList& list);
-};
-const strict_files::Choices<AbstractionSpace::Unknown>& choicesOf(AbstractionSpace::Unknown);
-
-/** What the optimal abstraction of a semantic octree keeps. Files say the same by the classes'
- * names, see AbstractionText and WeightsFile. */
-struct AbstractionOptions : AbstractionSpace {
-  /** Terms over classes 0..K (0 = free space) and alpha. */
-  tree_abstraction::AbstractionWeights weights;
   /** p(x): volume, times the weight of the region it lies in. */
   std::vector<Region> regions;
+  /** More of them, by their texts, separated by semicolons: see Region::text(). */
+  std::string regionTexts;
 
-  /** \throw std::invalid_argument naming the field and its value. */
-  void validate(int numClasses) const;
-};
-
-/** Name of class 0 in files and reports. */
-constexpr const char* kFreeSpace = "free_space";
-
-/** What an abstraction keeps, by the names of classes: one line an option, for .ini files. */
-struct AbstractionText : AbstractionSpace {
-  /** Classes worth keeping and worth dropping with their weights (beta, gamma), "road: 1, car:
-   * 0.5". Several classes that count as one are joined by "+": "road+parking: 1". */
-  std::string relevant, irrelevant;
-  /** Weight of the whole class variable (which class it is, or free); negative: worth dropping. */
-  double everything = 0;
-  /** Price of a nat of I_X. */
-  double alpha = tree_abstraction::kAlpha;
-  /** Texts of regions, separated by semicolons: see Region::text(). */
-  std::string regions;
-
-  bool isSet() const { return !relevant.empty() || !irrelevant.empty() || everything != 0; }
-  /** The options for a map of these classes.
-   * \throw std::invalid_argument naming the option and its value. */
+  /** Whether anything has a weight. */
+  bool isSet() const;
+  /** A term by the names of its classes. \param members several count as one
+   * \param weight below 0 where they are irrelevant
+   * \throw std::invalid_argument no such class, one twice, or two terms of one name. */
+  void add(const semantic_types::ClassTable& classes, const std::string& term,
+           const std::vector<std::string>& members, double weight);
+  /** The same without names and texts, in `weights` and `regions` alone.
+   * \throw std::invalid_argument naming the option and its value, or a class that is both relevant
+   * and irrelevant. */
   AbstractionOptions forClasses(const semantic_types::ClassTable& classes) const;
+  /** What files can say: all but the frame, and `weights.terms` and `regions`. */
   void describe(strict_files::OptionList& list);
   /** Checks all but what depends on the classes. \throw std::invalid_argument */
   void validate() const;
 };
+const strict_files::Choices<AbstractionOptions::Unknown>& choicesOf(AbstractionOptions::Unknown);
 
-/** One way to weigh the classes, and the compressed map it leads to. */
-struct Solution {
-  std::string name;  ///< letters, digits, '-' and '_': files are named after it
-  /** Weights > 0 are relevant, < 0 irrelevant. */
-  std::vector<tree_abstraction::InformationTerm> terms;
-  std::optional<double> alpha;
-};
-
-/** What a file of weights holds. */
-struct WeightsFile {
-  std::string name;  ///< what messages call it
-  std::vector<Solution> solutions;
-  /** All but the weights; the same for all solutions, so that they can be compared. */
-  AbstractionOptions space;
-
-  /** \param wanted a solution's name; empty: the first \throw std::runtime_error naming the file:
-   * it has none of this name. */
-  const Solution& solution(const std::string& wanted) const;
-};
-
-/** Reads one solution or a list `solutions` (YAML); the syntax stands in the README of
- * semantic-map-compress.
+/** Reads one solution or a list `solutions` (YAML), each with what the file says of all; the syntax
+ * stands in the README of semantic-map-compress.
+ * \param alpha of solutions that state none
  * \throw std::runtime_error naming file, line, key and value: unreadable, unknown or repeated key,
  * a class that is not in the table, a weight or alpha that is not a number >= 0, a class both
  * relevant and irrelevant, a solution without weights, two solutions of one name. */
-WeightsFile loadWeights(const std::filesystem::path& file,
-                        const semantic_types::ClassTable& classes);
+std::vector<AbstractionOptions> loadWeights(const std::filesystem::path& file,
+                                            const semantic_types::ClassTable& classes,
+                                            double alpha = tree_abstraction::kAlpha);
 /** Reads weights from a text. \param name What messages call it. */
-WeightsFile weightsOfText(const std::string& text, const std::string& name,
-                          const semantic_types::ClassTable& classes);
+std::vector<AbstractionOptions> weightsOfText(const std::string& text, const std::string& name,
+                                              const semantic_types::ClassTable& classes,
+                                              double alpha = tree_abstraction::kAlpha);
+/** \param wanted a solution's name; empty: the first \param source what messages call where they
+ * are from \throw std::runtime_error naming that: it has none of this name. */
+AbstractionOptions solutionIn(const std::vector<AbstractionOptions>& solutions,
+                              const std::string& wanted, const std::string& source);
+/** A solution of a file: see loadWeights() and solutionIn(). */
+inline AbstractionOptions loadSolution(const std::filesystem::path& file, const std::string& wanted,
+                                       const semantic_types::ClassTable& classes) {
+  return solutionIn(loadWeights(file, classes), wanted, file.string());
+}
 
 /** All informations to be measured, each once: first the classes (0 = free space to K), then the
  * groups and whole class variables of the solutions. They all are terms of one abstraction, so that
@@ -132,7 +119,8 @@ WeightsFile weightsOfText(const std::string& text, const std::string& name,
  * that some solution weighs. */
 class TermCatalog {
  public:
-  TermCatalog(const semantic_types::ClassTable& classes, const std::vector<Solution>& solutions);
+  TermCatalog(const semantic_types::ClassTable& classes,
+              const std::vector<AbstractionOptions>& solutions);
 
   std::size_t size() const { return m_terms.size(); }
   std::size_t numClasses() const { return m_numClasses; }
@@ -144,12 +132,12 @@ class TermCatalog {
   /** The terms themselves, with weight 0. */
   std::vector<tree_abstraction::InformationTerm> terms(std::size_t b) const;
   /** A batch's terms with the weights that a solution gives them. */
-  std::vector<tree_abstraction::InformationTerm> weighedTerms(const Solution& solution,
+  std::vector<tree_abstraction::InformationTerm> weighedTerms(const AbstractionOptions& solution,
                                                               std::size_t b) const;
   /** Weight of each term in a solution. */
-  std::vector<double> allWeights(const Solution& solution) const;
+  std::vector<double> allWeights(const AbstractionOptions& solution) const;
   /** Weight of each of the batch's terms in a solution. */
-  std::vector<double> weights(const Solution& solution, std::size_t b) const;
+  std::vector<double> weights(const AbstractionOptions& solution, std::size_t b) const;
 
  private:
   std::size_t indexOf(const tree_abstraction::InformationTerm& term) const;

@@ -49,7 +49,7 @@ class AlphaTrees {
   struct Path {
     tree_abstraction::AlphaPath trees;
     std::size_t first, last;          ///< the path's tree that is tree k, and the next
-    std::vector<double> addedLeaves;  ///< to tree k, by each node of the path
+    std::vector<double> addedLeaves;  ///< by each tree of the path to the one before
   };
   void mergeTies();
   Path within(std::size_t k) const;

@@ -116,7 +116,7 @@ struct TLikelihoodOptions : public TNamedOptions<TLikelihoodOptions> {
 /** What the map's optimal abstraction keeps: section `[..._abstractionOpts]`. Without any weights
  * the map keeps no G-values. */
 struct TAbstractionOptions : public TNamedOptions<TAbstractionOptions>,
-                             public semantic_octree::AbstractionText {};
+                             public semantic_octree::AbstractionOptions {};
 
 /** What the map's 3D object shows: section `[..._renderOpts]`. */
 struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {

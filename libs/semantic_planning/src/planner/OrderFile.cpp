@@ -80,18 +80,9 @@ semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrd
   semantic_octree::AbstractionOptions options;
   options.blockSize = 3.2;
   options.weights.terms = {ranks};
-  options.weights.alpha = tree_abstraction::kPlanningAlpha;
-  return options;
-}
-
-semantic_octree::AbstractionOptions abstractionOf(const std::filesystem::path& weights,
-                                                  const std::string& solution,
-                                                  const semantic_types::ClassTable& classes) {
-  const semantic_octree::WeightsFile file = semantic_octree::loadWeights(weights, classes);
-  const semantic_octree::Solution& found = file.solution(solution);
-  semantic_octree::AbstractionOptions options = file.space;
-  options.weights.terms = found.terms;
-  options.weights.alpha = found.alpha.value_or(tree_abstraction::kPlanningAlpha);
+  // Above tree_abstraction::kAlpha: cells only place a roadmap's vertices, edges are checked by
+  // voxels.
+  options.weights.alpha = 0.005;
   return options;
 }
 

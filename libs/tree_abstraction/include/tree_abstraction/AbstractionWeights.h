@@ -27,9 +27,8 @@ InformationTerm irrelevant(std::string name, double gamma, std::vector<int> clas
 /** The whole class variable with its K + 1 outcomes. */
 InformationTerm wholeClassVariable(std::string name, double weight, int numClasses);
 
-/** Prices of detail (AbstractionWeights::alpha) that serve: in a map, and in one that paths are
- * planned in, which needs less of it. */
-constexpr double kAlpha = 0.002, kPlanningAlpha = 0.005;
+/** A price of detail (AbstractionWeights::alpha) that serves. */
+constexpr double kAlpha = 0.002;
 
 /** What the compressed tree maximizes: J(T) = sum_t weight_t I_t(T) - alpha I_X(T). */
 struct AbstractionWeights {

@@ -24,45 +24,6 @@ std::vector<double> collapseAlphas(const std::vector<std::int32_t>& parents,
                                    const std::vector<double>& gains,
                                    const std::vector<double>& prices);
 
-/** The compressed trees of all alphas, from the roots alone (tree 0) to that of alpha = 0 (the
- * last).
- *
- * Each tree holds all nodes of the one before. Nodes whose taus agree but for rounding (1e-12) come
- * in together, so that every tree is that of some alpha. */
-class AlphaPath {
- public:
-  /** \param tau From collapseAlphas(). \throw std::invalid_argument a tau that is not a number. */
-  explicit AlphaPath(std::vector<double> tau);
-
-  const std::vector<double>& tau() const { return m_tau; }
-  std::size_t numTrees() const { return m_end.size(); }
-
-  /** Tree k is the compressed tree from lowestAlpha(k) on and below highestAlpha(k). */
-  double lowestAlpha(std::size_t k) const;
-  double highestAlpha(std::size_t k) const;
-  /** An alpha amid those two, where the search finds tree k whatever the rounding; infinite if only
-   * an infinite alpha gives the tree. */
-  double alpha(std::size_t k) const;
-
-  /** Per node of tau(): whether tree k expands it. */
-  std::vector<char> expanded(std::size_t k) const;
-  /** Per tree: `base` plus the sum of `amounts` over the nodes it expands. Counts leaves (number of
-   * children - 1 a node), bytes, information (p(n) JS) along the path.
-   * \throw std::invalid_argument as many amounts as nodes expected. */
-  std::vector<double> totals(const std::vector<double>& amounts, double base) const;
-
-  /** The largest tree whose total is at most `budget`.
-   * \param costs Per node what expanding it adds, >= 0. \param base What the roots alone cost.
-   * \throw std::invalid_argument naming the field: a bad cost, or a budget below `base`. */
-  std::size_t largestWithin(double budget, const std::vector<double>& costs, double base) const;
-
- private:
-  std::vector<double> m_tau;
-  /** Nodes that some tree expands (tau > 0), largest tau first; tree k has the first m_end[k]. */
-  std::vector<std::int32_t> m_order;
-  std::vector<std::size_t> m_end;
-};
-
 /** Whether two taus agree but for rounding. */
 inline bool isTie(double larger, double smaller) {
   constexpr double kTolerance = 1e-12;
@@ -75,25 +36,32 @@ inline double alphaBetween(double low, double high) {
   return low > 0 ? 2.0 * low : 1.0;
 }
 
-/** The trees of an AlphaPath in which some of its nodes come in, the largest tau first: for trees
- * of which only a part is asked for, and whose nodes would be too many for memory. */
-class AlphaSteps {
+/** The compressed trees of all alphas, from the roots alone (tree 0) to that of alpha = 0 (the
+ * last); or those of them in which some of the nodes come in, where all would be too many for
+ * memory.
+ *
+ * Each tree holds all nodes of the one before. Nodes whose taus agree but for rounding (1e-12) come
+ * in together, so that every tree is that of some alpha. */
+class AlphaPath {
  public:
-  /** \param tau of all nodes, see collapseAlphas(), in any order; those that are not above 0 may be
-   * left out \param asked of the nodes that are asked for, each one of `tau` or not above 0 */
-  AlphaSteps(std::vector<double> tau, const std::vector<double>& asked);
+  /** \param tau From collapseAlphas(), in any order; those that are not above 0 may be left out. */
+  explicit AlphaPath(const std::vector<double>& tau) : AlphaPath(tau, tau) {}
+  /** \param asked of the nodes that are asked for, each one of `tau` or not above 0 */
+  AlphaPath(std::vector<double> tau, const std::vector<double>& asked);
 
-  /** 0: the tree of the roots alone; the last: what no tree expands. */
-  std::size_t numSteps() const { return m_lowest.size() + 2; }
-  /** The first step that expands a node that was asked for. */
-  std::size_t stepOf(double tau) const;
-  /** As AlphaPath::alpha() and highestAlpha(). \param step not the last */
-  double alpha(std::size_t step) const;
-  double highestAlpha(std::size_t step) const;
+  std::size_t numTrees() const { return m_lowest.size() + 1; }
+  /** The first tree that expands a node that was asked for; numTrees() if none does. */
+  std::size_t treeOf(double tau) const;
+  /** Tree k is the compressed tree from lowestAlpha(k) on and below highestAlpha(k). */
+  double lowestAlpha(std::size_t k) const { return k == 0 ? m_highest : m_next.at(k - 1); }
+  double highestAlpha(std::size_t k) const;
+  /** An alpha amid those two, where the search finds tree k whatever the rounding; infinite if only
+   * an infinite alpha gives the tree. */
+  double alpha(std::size_t k) const { return alphaBetween(lowestAlpha(k), highestAlpha(k)); }
 
  private:
   double m_highest = 0;          ///< tau; 0: there is none
-  std::vector<double> m_lowest;  ///< tau of each step but the first and the last, falling
+  std::vector<double> m_lowest;  ///< tau of what comes in with each tree but the first, falling
   std::vector<double> m_next;    ///< the largest tau below; 0: there is none
 };
 

@@ -11,21 +11,6 @@
 
 namespace semantic_octree {
 
-/** Tiles in cubes, or in a map. */
-class TileList {
- public:
-  /** Adds the tiles in a cube of a TileLog. */
-  void add(std::uint64_t cube);
-  /** Adds the tiles that a node's leaves are in. */
-  void add(const SemanticOcTreeNode& node, const Cell& cell);
-  /** Each once, sorted. */
-  std::vector<octomap::OcTreeKey> keys();
-
- private:
-  void addAll(const Cell& cube);
-  std::vector<std::uint64_t> m_tiles;
-};
-
 /** What changed, oldest first and numbered, for readers that each have a place of their own. What
  * all of them have read is dropped. When the log has grown long, its older half is dropped: a
  * reader that has not read it is lost, and has to look at everything. */
@@ -127,7 +112,7 @@ typename Log::Place& placeIn(std::unique_ptr<typename Log::Place>& place,
 /** The cubes in which a map changed, each a tile of 8 x 8 x 8 voxels or larger. */
 class TileLog : public ChangeLog<std::uint64_t> {
  public:
-  void add(const Cell& cube);
+  void add(const Cube& cube);
 };
 
 }  // namespace semantic_octree

@@ -12,6 +12,7 @@ struct LeafContent {
   std::optional<ClassRecord> record;
 
   const ClassRecord* recordOrNull() const { return record ? &*record : nullptr; }
+  bool operator==(const LeafContent& o) const { return value == o.value && record == o.record; }
   void write(NodeArena& arena, Slot& unknown) const {
     arena.createLeaf(unknown, value);
     if (record) arena.setRecord(unknown, *record);

@@ -37,7 +37,7 @@ class NodeEditor {
 
   /** Prunes or recomputes an inner node, whose children are up to date; one without children is
    * removed. \return changed */
-  bool finish(Slot& inner, const Cell& cell, bool changed, bool reshaped) {
+  bool finish(Slot& inner, const Cube& cell, bool changed, bool reshaped) {
     if (pruning && arena.prune(inner)) return changed;
     if (!changed) return false;
     inner.value = store.highestValueBelow(inner);
@@ -47,25 +47,25 @@ class NodeEditor {
       recompute(inner, cell, reshaped);
     return true;
   }
-  void recompute(Slot& inner, const Cell& cell, bool reshaped) {
+  void recompute(Slot& inner, const Cube& cell, bool reshaped) {
     if (m_observer) m_observer->recompute(store, inner, cell, reshaped);
   }
 
   /** Takes down that a tile, or a larger cube, changed. \return changed */
-  bool note(const Cell& cube, bool changed) {
+  bool note(const Cube& cube, bool changed) {
     if (changed && m_touched) m_changed.push_back(cube);
     return changed;
   }
   /** Tells what was taken down; not from several threads at once. */
   void tellNoted() {
-    for (const Cell& cube : m_changed) m_touched->add(cube);
+    for (const Cube& cube : m_changed) m_touched->add(cube);
     m_changed.clear();
   }
 
  private:
   NodeObserver::Worker* m_observer;
   TileLog* m_touched;
-  std::vector<Cell> m_changed;
+  std::vector<Cube> m_changed;
 };
 
 }  // namespace semantic_octree

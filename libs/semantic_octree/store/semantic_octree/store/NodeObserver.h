@@ -17,7 +17,7 @@ class NodeObserver {
     virtual ~Worker() = default;
     /** Computes what is kept of an inner node that is a slot. \param reshaped whether a block's
      * voxels or octants are not those that were known, or leaves, before */
-    virtual void recompute(NodeStore& store, Slot& inner, const Cell& cell, bool reshaped) = 0;
+    virtual void recompute(NodeStore& store, Slot& inner, const Cube& cell, bool reshaped) = 0;
   };
 
   virtual ~NodeObserver() = default;
@@ -36,6 +36,6 @@ class NodeObserver {
 };
 
 /** Has it all computed, of a node and all inner nodes below. */
-void recomputeAll(NodeObserver::Worker& worker, NodeStore& store, Slot& slot, const Cell& cell);
+void recomputeAll(NodeObserver::Worker& worker, NodeStore& store, Slot& slot, const Cube& cell);
 
 }  // namespace semantic_octree

@@ -1,6 +1,6 @@
 #pragma once
-#include <semantic_octree/store/Cell.h>
 #include <semantic_octree/store/ClassRecord.h>
+#include <semantic_octree/store/Cubes.h>
 #include <semantic_octree/store/IndexPool.h>
 
 #include <algorithm>
@@ -118,7 +118,7 @@ class TileSource {
   virtual int depth() const = 0;
   /** An inner node at that depth has changed, and is as it is to be, with all that is below. Others
    * may go away for it. */
-  virtual void changed(const Cell& cell) = 0;
+  virtual void changed(const Cube& cell) = 0;
   /** Whether there may be leaves below a node that is away whose half-life is that of one of these.
    */
   virtual bool mayHold(const Slot& away, const ClassSet& classes) const = 0;
@@ -177,7 +177,7 @@ class NodeStore {
     if (slot.kind == Slot::Kind::Away) bringAway(slot);
   }
   /** Whoever changes nodes tells it of each that is as it is to be, with all that is below. */
-  void tellChanged(const Slot& slot, const Cell& cell) const {
+  void tellChanged(const Slot& slot, const Cube& cell) const {
     if (m_tiles && cell.depth == m_tiles->depth() && slot.isInner()) m_tiles->changed(cell);
   }
   /** Counts nodes that went away, or came back (negative). */

@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_octree/InsertionOptions.h>
-#include <semantic_octree/store/Cell.h>
+#include <semantic_octree/store/Cubes.h>
 #include <semantic_types/LabeledCloud.h>
 #include <Eigen/Core>
 #include <Eigen/Geometry>

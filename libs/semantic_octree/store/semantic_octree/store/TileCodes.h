@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/store/Cell.h>
+#include <semantic_octree/store/Cubes.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -22,7 +22,7 @@ class TreeBuilder {
     MapAccess::checkMayChange(map);
     MapAccess::tellAll(map);
     NodeStore& store = MapAccess::store(map);
-    TreeBuilder(store, map.pruning(), merge).build(store.root(), root, Cell());
+    TreeBuilder(store, map.pruning(), merge).build(store.root(), root, Cube());
   }
   /** \throw std::invalid_argument a map that is to be filled is not empty, keeps an abstraction, or
    * is of another kind than `like`. */
@@ -40,7 +40,7 @@ class TreeBuilder {
         m_merges(pruning && merge == Merge::AsTheMapDoes) {}
 
   template <typename Cursor>
-  void build(Slot& slot, const Cursor& cursor, const Cell& cell) {
+  void build(Slot& slot, const Cursor& cursor, const Cube& cell) {
     if (!cursor.known()) return;
     if (cursor.isLeaf() && m_allowsLargeLeaves)
       cursor.content().write(m_arena, slot);
@@ -52,7 +52,7 @@ class TreeBuilder {
   }
 
   template <typename Cursor>
-  void buildChildren(Slot& slot, const Cursor& cursor, const Cell& cell) {
+  void buildChildren(Slot& slot, const Cursor& cursor, const Cube& cell) {
     Octant& octant = m_arena.createOctant(slot);
     Units highest = kUnknown;
     for (int i = 0; i < 8; ++i) {

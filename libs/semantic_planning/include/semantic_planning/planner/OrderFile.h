@@ -31,12 +31,4 @@ colored_graph::ClassOrder loadClassOrder(const std::filesystem::path& file,
  * it keeps what tells the ranks apart, each from the others and from all that is forbidden. */
 semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order);
 
-/** One that keeps what a solution of a file of weights says (see semantic_octree::loadWeights); its
- * alpha is kPlanningAlpha if the file says none. \param solution its name; empty: the first
- * \throw std::runtime_error naming the file and what is wrong with it, or that it has no such
- * solution */
-semantic_octree::AbstractionOptions abstractionOf(const std::filesystem::path& weights,
-                                                  const std::string& solution,
-                                                  const semantic_types::ClassTable& classes);
-
 }  // namespace semantic_planning

@@ -1,0 +1,152 @@
+#include <semantic_octree/store/MapAccess.h>
+
+#include "TreeContent.h"
+
+namespace semantic_octree {
+namespace {
+
+class TreeWriter {
+ public:
+  TreeWriter(std::ostream& out, const SemanticOcTree& tree)
+      : m_out(out), m_tree(tree), m_store(MapAccess::store(tree)) {}
+
+  std::uint32_t write() {
+    putHeader();
+    m_out.put<std::uint64_t>(m_tree.size());
+    if (!m_tree.empty()) {
+      m_out.put(static_cast<std::uint8_t>(kindOf(m_store.root())));
+      putSlot(m_store.root());
+    }
+    return m_out.finish();
+  }
+
+  std::uint32_t writeTile(const Slot& octant, const Cube& cell, std::uint64_t nodes) {
+    putHeader();
+    m_out.put<std::uint64_t>(nodes + static_cast<std::uint64_t>(cell.depth) + 1);
+    m_out.put(static_cast<std::uint8_t>(NodeKind::Inner));
+    for (int depth = 1; depth <= cell.depth; ++depth)
+      m_out.put(static_cast<std::uint16_t>(static_cast<unsigned>(NodeKind::Inner)
+                                           << 2 * childOnTheWay(cell, depth)));
+    putSlot(octant);
+    return m_out.finish();
+  }
+
+ private:
+  void putHeader() {
+    m_out.put(m_tree.getResolution());
+    m_out.put(m_tree.pruning());
+    m_out.put(std::uint8_t{0});  // kept free
+    for (const double* x : numbersOf(m_tree.filterParameters())) m_out.put(*x);
+    putClasses(m_tree.classes());
+    putTime();
+  }
+
+  void putClasses(const ClassTable& classes) {
+    m_out.put(static_cast<std::uint8_t>(classes.size()));
+    for (int id = 1; id <= classes.size(); ++id) {
+      const semantic_types::Color& color = classes.color(static_cast<ClassId>(id));
+      m_out.put(classes.name(static_cast<ClassId>(id)));
+      for (const std::uint8_t channel : {color.r, color.g, color.b}) m_out.put(channel);
+    }
+    m_out.put(static_cast<std::uint8_t>(classes.unknownRawId()));
+    m_out.put(static_cast<std::uint32_t>(classes.folds().size()));
+    for (const auto& [rawId, id] : classes.folds()) {
+      m_out.put(rawId);
+      m_out.put(id);
+    }
+  }
+
+  void putTime() {
+    for (int id = 0; id <= m_tree.numClasses(); ++id) {
+      const double halfLife = m_tree.classes().halfLife(static_cast<ClassId>(id));
+      m_out.put(halfLife == semantic_types::kForever ? 0.0 : halfLife);
+    }
+    m_out.put(m_tree.classes().hasHalfLives() ? MapAccess::clock(m_tree) : 0);
+  }
+
+  static NodeKind kindOf(const Slot& slot) {
+    switch (slot.kind) {
+      case Slot::Kind::None:
+        return NodeKind::None;
+      case Slot::Kind::Leaf:
+        return NodeKind::Leaf;
+      case Slot::Kind::LeafWithRecord:
+        return NodeKind::LeafWithRecord;
+      default:
+        return NodeKind::Inner;
+    }
+  }
+
+  void putLeaf(const Slot& leaf) {
+    m_out.put(leaf.value);
+    if (leaf.kind == Slot::Kind::LeafWithRecord) putRecord(m_store.record(leaf));
+  }
+
+  void putRecord(const ClassRecord& record) {
+    m_out.put(record.count);
+    m_out.put(record.rest);
+    for (int i = 0; i < record.count; ++i) {
+      m_out.put(record.ids[i]);
+      m_out.put(record.logOdds[i]);
+    }
+  }
+
+  void putSlot(const Slot& slot) {
+    if (slot.isLeaf()) return putLeaf(slot);
+    m_store.bring(slot);
+    slot.kind == Slot::Kind::Block ? putBlock(m_store.block(slot))
+                                   : putChildren(m_store.octant(slot));
+  }
+
+  void putChildren(const Octant& octant) {
+    std::uint16_t kinds = 0;
+    for (int i = 0; i < 8; ++i)
+      kinds |= static_cast<std::uint16_t>(static_cast<unsigned>(kindOf(octant.slots[i])) << 2 * i);
+    m_out.put(kinds);
+    for (const Slot& child : octant.slots)
+      if (child.isLeaf()) putLeaf(child);
+    for (const Slot& child : octant.slots)
+      if (child.isInner()) putSlot(child);
+  }
+
+  void putBlock(const Block& block) {
+    std::uint8_t known = 0, recorded = 0;
+    for (int o = 0; o < 8; ++o) {
+      known |= static_cast<std::uint8_t>((block.knownIn(o) != 0) << o);
+      recorded |= static_cast<std::uint8_t>((block.isLeafOctant(o) && block.hasRecord(8 * o)) << o);
+    }
+    m_out.put(known);
+    m_out.put(block.leafOctants);
+    m_out.put(recorded);
+    for (int o = 0; o < 8; ++o) {
+      if (!block.knownIn(o) || block.isLeafOctant(o)) continue;
+      m_out.put(block.knownIn(o));
+      m_out.put(static_cast<std::uint8_t>(block.recorded >> 8 * o));
+    }
+    Units values[64];
+    int numValues = 0;
+    for (int o = 0; o < 8; ++o)
+      for (VoxelBits bits = block.isLeafOctant(o) ? 1 : block.knownIn(o); bits; bits &= bits - 1)
+        values[numValues++] = block.values[8 * o + __builtin_ctzll(bits)];
+    m_out.put(values, numValues);
+    const ClassRecord* records = block.recorded ? m_store.recordsOf(block) : nullptr;
+    for (int i = 0; i < block.numRecords(); ++i) putRecord(records[i]);
+  }
+
+  CheckedWriter m_out;
+  const SemanticOcTree& m_tree;
+  const NodeStore& m_store;
+};
+
+}  // namespace
+
+std::uint32_t writeContent(std::ostream& out, const SemanticOcTree& tree) {
+  return TreeWriter(out, tree).write();
+}
+
+std::uint32_t writeTileContent(std::ostream& out, const SemanticOcTree& tree, const Slot& octant,
+                               const Cube& cell, std::uint64_t nodes) {
+  return TreeWriter(out, tree).writeTile(octant, cell, nodes);
+}
+
+}  // namespace semantic_octree
