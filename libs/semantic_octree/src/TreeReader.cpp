@@ -2,6 +2,8 @@
 #include <semantic_octree/store/LeafContent.h>
 #include <semantic_octree/store/MapAccess.h>
 
+#include <algorithm>
+
 #include "Decay.h"
 #include "TreeContent.h"
 
