@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using bags::BagTopic;
+using point_fields::Frames;
 using semantic_types::ClassTable;
 using Names = std::vector<std::string>;
 
@@ -42,7 +43,7 @@ class BagContents {
       }
       return true;
     });
-    for (const auto& pose : m_odometry) frames.addOdometry(pose);
+    for (const auto& pose : m_odometry) frames.add(pose, Frames::Kind::Odometers);
     for (const auto& [name, encoding] : m_encodings)
       if (point_fields::mayBeDepth(encoding) && name.find("label") == std::string::npos)
         depths.push_back(name);
@@ -88,7 +89,7 @@ class BagContents {
   }
 
   Names clouds, depths, lasers;
-  bags::BagFrames frames;
+  Frames frames{false};
 
  private:
   bool note(const BagTopic& topic) {
@@ -103,7 +104,8 @@ class BagContents {
   void look(const BagTopic& topic, std::string_view message) {
     if (topic.type == bags::kTransforms)
       for (const auto& pose : bags::transformsOfMessage(message))
-        frames.add(pose, endsWith(topic.name, "tf_static"));
+        frames.add(pose,
+                   endsWith(topic.name, "tf_static") ? Frames::Kind::Static : Frames::Kind::Moving);
     else if (topic.type == bags::kOdometry)
       m_odometry.push_back(bags::odometryOfMessage(message));
     else if (topic.type == bags::kCameraInfo && m_cameras.count(topic.name) == 0)
@@ -123,18 +125,15 @@ mrpt::poses::CPose3D poseOf(const Eigen::Isometry3d& T) {
 }
 
 /** Its beams lie evenly around the frame's x axis, which ROS's do not. */
-mrpt::obs::CObservation2DRangeScan laserScanOf(const bags::BagLaserScan& laser) {
-  const auto steps = static_cast<float>(laser.ranges.size()) - 1;
-  if (laser.ranges.empty() || !std::isfinite(laser.firstAngle + laser.angleStep * steps))
-    throw std::runtime_error("a laser scan without beams, or with angles that are no numbers");
+mrpt::obs::CObservation2DRangeScan laserScanOf(const point_fields::RawLaserScan& beams) {
   mrpt::obs::CObservation2DRangeScan scan;
-  scan.aperture = std::abs(laser.angleStep) * steps;
-  scan.rightToLeft = laser.angleStep >= 0;
-  scan.maxRange = laser.mostRange;
-  scan.resizeScan(laser.ranges.size());
-  for (std::size_t i = 0; i < laser.ranges.size(); ++i) {
-    const float range = laser.ranges[i];
-    const bool isValid = range >= laser.leastRange && range <= laser.mostRange;
+  scan.aperture = std::abs(beams.angleStep) * static_cast<float>(beams.ranges.size() - 1);
+  scan.rightToLeft = beams.angleStep >= 0;
+  scan.maxRange = beams.mostRange;
+  scan.resizeScan(beams.ranges.size());
+  for (std::size_t i = 0; i < beams.ranges.size(); ++i) {
+    const float range = beams.ranges[i];
+    const bool isValid = range >= beams.leastRange && range <= beams.mostRange;
     scan.setScanRange(i, isValid ? range : 0);
     scan.setScanRangeValidity(i, isValid && std::isfinite(range));
   }
@@ -213,13 +212,22 @@ class BagScans {
                         timesOf(message.points, static_cast<double>(message.stamp) * 1e-9));
   }
 
+  /** MRPT's laser scans have no times of beams: a cloud has them. */
   void writeLaserScan(const Waiting& waiting) {
     const bags::BagLaserScan message = bags::laserScanOfMessage(waiting.message);
-    auto scan = laserScanOf(message);
+    const auto& beams = message.beams;
+    const auto steps = static_cast<double>(beams.ranges.size()) - 1;
+    const double middle = double(beams.firstAngle) + double(beams.angleStep) * steps / 2;
+    if (beams.ranges.empty() || !std::isfinite(middle))
+      throw std::runtime_error("a laser scan without beams, or with angles that are no numbers");
     const auto T_robot_sensor = place(message);
     if (!T_robot_sensor) return m_output.skip();
-    const auto steps = static_cast<double>(message.ranges.size()) - 1;
-    const double middle = double(message.firstAngle) + double(message.angleStep) * steps / 2;
+    std::vector<float> times;
+    auto cloud = cloudOf(beams, times);
+    if (!times.empty())
+      return m_output.writeCloud(timeOf(message), waiting.topic.name, std::move(cloud),
+                                 poseOf(*T_robot_sensor), std::move(times));
+    auto scan = laserScanOf(beams);
     scan.timestamp = timeOf(message);
     scan.sensorLabel = waiting.topic.name;
     scan.sensorPose = poseOf(*T_robot_sensor) + mrpt::poses::CPose3D(0, 0, 0, middle, 0, 0);
@@ -253,11 +261,11 @@ class BagScans {
   /** Writes where the robot is, if anything moves.
    * \return T_robot_sensor; none: where the robot is, or its sensor on it, is not known */
   std::optional<Eigen::Isometry3d> place(const bags::BagHeader& seen) {
-    const bags::BagFrames& frames = m_contents.frames;
-    const std::string robot = frames.robotOf(seen.frame);
+    const Frames& frames = m_contents.frames;
+    const std::string robot = frames.robotOf(seen.frame), map = frames.rootOf(seen.frame);
     if (robot.empty()) return Eigen::Isometry3d::Identity();
-    const auto T_map_robot = frames.find(robot, seen.stamp);
-    const auto T_robot_sensor = frames.find(seen.frame, seen.stamp, robot);
+    const auto T_map_robot = frames.find(map, robot, seen.stamp).T_target_source;
+    const auto T_robot_sensor = frames.find(robot, seen.frame, seen.stamp).T_target_source;
     if (T_map_robot && T_robot_sensor) m_output.writePose(timeOf(seen), poseOf(*T_map_robot));
     return T_map_robot ? T_robot_sensor : std::nullopt;
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -29,8 +30,31 @@ void forEachColumn(const Ground& ground, const F& use) {
   }
 }
 
-/** A place in the part of the ground that hangs together and has the most surfaces. */
-GroundPoint placeInLargestPart(const Ground& ground) {
+/** One of the floors of a building; without a height, all that there is. */
+class Storey {
+ public:
+  Storey(const Ground& ground, std::optional<double> floor, double vehicleHeight) {
+    if (!floor) return;
+    const double top = ground.voxelSize() / 2;  // of a voxel, above its center
+    m_floor = ground.keyOf(*floor - top);
+    m_height = static_cast<int>(vehicleHeight / ground.voxelSize());
+  }
+  /** In voxels. What is a vehicle's height or more from the floor is another storey's. */
+  int distance(const Surface& surface) const {
+    return m_floor ? std::abs(surface.z - *m_floor) : 0;
+  }
+  bool has(const Surface& surface) const { return !m_floor || distance(surface) < m_height; }
+  bool hasThing(const Ground& ground, Column column) const {
+    return m_floor && ground.isOccupied(column, *m_floor + 1, *m_floor + m_height);
+  }
+
+ private:
+  std::optional<int> m_floor;
+  int m_height = 0;
+};
+
+/** A place in the part of a storey that hangs together and has the most surfaces. */
+GroundPoint placeInLargestPart(const Ground& ground, const Storey& storey) {
   struct Part {
     GroundPoint place;
     std::size_t surfaces;
@@ -38,7 +62,7 @@ GroundPoint placeInLargestPart(const Ground& ground) {
   std::vector<Part> parts;
   forEachColumn(ground, [&](Column column) {
     for (const Surface& surface : ground.surfaces(column)) {
-      if (!surface.drivable) continue;
+      if (!surface.drivable || !storey.has(surface)) continue;
       const GroundPoint place{column, surface};
       const auto same = std::find_if(parts.begin(), parts.end(), [&](const Part& part) {
         return ground.connected(part.place, place);
@@ -59,18 +83,25 @@ GroundPoint placeInLargestPart(const Ground& ground) {
 
 class Costs {
  public:
-  Costs(const Ground& ground, const colored_graph::ClassOrder& order, double inscribedRadius)
+  Costs(const Ground& ground, const colored_graph::ClassOrder& order, double inscribedRadius,
+        const Storey& storey)
       : m_ground(ground),
         m_order(order),
         m_radius(inscribedRadius),
-        m_place(placeInLargestPart(ground)) {}
+        m_storey(storey),
+        m_place(placeInLargestPart(ground, storey)) {}
 
   int at(Column column) const {
-    const auto surfaces = m_ground.surfaces(column);
-    if (surfaces.empty()) return CostGrid::kUnknown;
-    for (const Surface& surface : surfaces)
-      if (surface.drivable && m_ground.connected(m_place, {column, surface})) return of(surface);
-    return CostGrid::kLethal;
+    bool isKnown = m_storey.hasThing(m_ground, column);
+    const Surface* nearest = nullptr;
+    for (const Surface& surface : m_ground.surfaces(column)) {
+      if (!m_storey.has(surface)) continue;
+      isKnown = true;
+      if (!surface.drivable || !m_ground.connected(m_place, {column, surface})) continue;
+      if (!nearest || m_storey.distance(surface) < m_storey.distance(*nearest)) nearest = &surface;
+    }
+    if (nearest) return of(*nearest);
+    return isKnown ? CostGrid::kLethal : CostGrid::kUnknown;
   }
 
  private:
@@ -85,6 +116,7 @@ class Costs {
   const Ground& m_ground;
   const colored_graph::ClassOrder& m_order;
   double m_radius;
+  const Storey& m_storey;
   GroundPoint m_place;
 };
 
@@ -123,9 +155,10 @@ const char* endingOf(CostMode mode) { return mode == CostMode::Scale ? ".png" : 
 
 CostGrid costGridOf(const semantic_octree::SemanticOcTree& map,
                     const colored_graph::ClassOrder& order,
-                    const semantic_planning::VehicleOptions& vehicle) {
+                    const semantic_planning::VehicleOptions& vehicle, std::optional<double> floor) {
   const Ground ground(map, vehicle, {}, order);
-  const Costs costs(ground, order, vehicle.footprint.inscribedRadius());
+  const Storey storey(ground, floor, vehicle.height);
+  const Costs costs(ground, order, vehicle.footprint.inscribedRadius(), storey);
   const std::vector<Column> tiles = ground.tiles();
   Column low = tiles.front(), high = tiles.front();
   for (const Column tile : tiles) {

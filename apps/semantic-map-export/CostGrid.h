@@ -4,6 +4,7 @@
 #include <semantic_planning/vehicle/VehicleOptions.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,8 @@ struct CostGrid {
 };
 
 /** The ground is the part that hangs together and has the most surfaces; of several levels in one
- * column the lowest counts. A rank costs from 0 (best) evenly to 90. kInscribed: the vehicle's
+ * column the lowest counts, and with a floor (m, map frame) the nearest to it that is less than the
+ * vehicle's height away. A rank costs from 0 (best) evenly to 90. kInscribed: the vehicle's
  * origin cannot be there, as its inscribed disc would leave the ground, whose forbidden classes do
  * not matter for that. kLethal: ground apart, forbidden classes, and what stands there. kUnknown:
  * the map knows nothing.
@@ -39,7 +41,7 @@ struct CostGrid {
  * \throw std::invalid_argument an order of other classes, or a bad vehicle */
 CostGrid costGridOf(const semantic_octree::SemanticOcTree& map,
                     const colored_graph::ClassOrder& order,
-                    const semantic_planning::VehicleOptions& vehicle);
+                    const semantic_planning::VehicleOptions& vehicle, std::optional<double> floor);
 
 /** A picture and its description, for ROS's map_server. */
 struct CostFiles {

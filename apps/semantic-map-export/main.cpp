@@ -195,8 +195,9 @@ class Exporter {
     const auto vehicle = costs.vehicle.empty() ? semantic_planning::VehicleOptions()
                                                : semantic_planning::loadVehicle(costs.vehicle);
     const fs::path picture = fs::path(file).replace_extension(endingOf(costs.mode));
-    const CostFiles files = semantic_map_export::filesOf(costGridOf(m_map, order, vehicle),
-                                                         costs.mode, picture.filename().string());
+    const CostFiles files =
+        semantic_map_export::filesOf(costGridOf(m_map, order, vehicle, m_options.grid.floor),
+                                     costs.mode, picture.filename().string());
     stage(file, [&files](std::ostream& out) { out << files.yaml; });
     stage(picture, [&files](std::ostream& out) { out << files.picture; });
   }

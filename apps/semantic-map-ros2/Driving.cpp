@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "StandardOutput.h"
-#include "Transforms.h"
 #include "measuring/Measuring.h"
 
 namespace semantic_map_ros2 {

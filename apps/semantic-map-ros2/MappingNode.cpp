@@ -15,15 +15,12 @@ namespace semantic_map_ros2 {
 
 using namespace std::chrono_literals;
 using Eigen::Isometry3d;
-using ros2::Stamp;
 using std::chrono::steady_clock;
 
 namespace {
 
 constexpr auto kStep = 100ms, kLook = 50ms, kWait = 20ms;
 constexpr std::size_t kMostLatencies = 10'000;
-/** Scans that wait take no more; the oldest goes. */
-constexpr std::size_t kQueueBytes = 500'000'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
 bool passed(steady_clock::time_point& since, steady_clock::duration period) {
@@ -38,10 +35,13 @@ bool passed(steady_clock::time_point& since, steady_clock::duration period) {
 MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& arguments,
                          semantic_octree::SemanticOcTree& map, std::function<void()> save)
     : m_parameters(parameters),
-      m_world(parameters.node.slam ? parameters.node.odomFrame : parameters.node.mapFrame),
       m_node("semantic_map", arguments),
       m_clock(parameters.node.useSimTime),
-      m_queue(kQueueBytes),
+      m_queue(m_parameters.node, {[this](const auto& target, const auto& source, Stamp stamp) {
+                                    return m_frames.find(target, source, stamp);
+                                  },
+                                  [this] { return m_clock.now(); },
+                                  [this](const std::string& what) { m_complaints.say(what); }}),
       m_mapper(map, parameters.mapping()),
       m_messages(m_node, map, parameters.node.mapFrame),
       m_tree(m_node, map, parameters.node.mapFrame),
@@ -49,7 +49,7 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
       m_save(std::move(save)),
       m_scanClock(parameters.insertion.maxGap),
       m_sensors(m_node, m_parameters.node, map.classes(), parameters.insertion.conversion, m_clock,
-                m_transforms, m_queue, m_complaints),
+                m_frames, m_queue, m_complaints),
       m_goals(m_node, "goal_pose"),
       m_initialPoses(m_node, "initialpose"),
       m_explorings(m_node, "~/explore"),
@@ -71,7 +71,7 @@ void MappingNode::run(const StopRequest& stop) {
     serve();
   }
   if (m_driving) m_driving->halt();
-  m_endedAt = steady_clock::now();
+  m_queue.close();
   while (insertNext()) continue;
   if (m_driving && m_driving->navigator()) m_driving->navigator()->finish();
   m_mapper.finish();
@@ -90,7 +90,8 @@ void MappingNode::serve() try {
 void MappingNode::look() {
   hear();
   if (m_driving && passed(m_steppedAt, kStep)) {
-    const auto latest = m_transforms.latest(m_world, m_parameters.node.baseFrame);
+    const auto latest =
+        m_frames.latest(m_parameters.node.worldFrame(), m_parameters.node.baseFrame);
     const Stamp now = m_clock.now();
     const bool isKnown = latest && std::abs(ros2::secondsOf(now - *latest)) < kTransformsAge;
     m_driving->step(isKnown ? robotAt(*latest) : std::nullopt, now);
@@ -129,9 +130,9 @@ void MappingNode::onInitialPose(const ros2::PoseWithCovarianceStamped& message) 
   if (!m_parameters.node.slam)
     return m_complaints.say("an initial pose came, but without slam /tf says where the robot is");
   const auto T_map_robot = inMap(message.header, message.pose.pose, "an initial pose");
-  const auto latest = m_transforms.latest(m_world, m_parameters.node.baseFrame);
-  const auto T_odometry_robot =
-      m_transforms.find(m_world, m_parameters.node.baseFrame, latest.value_or(m_stamp));
+  const auto latest = m_frames.latest(m_parameters.node.worldFrame(), m_parameters.node.baseFrame);
+  const auto T_odometry_robot = m_frames.find(
+      m_parameters.node.worldFrame(), m_parameters.node.baseFrame, latest.value_or(m_stamp));
   if (!T_map_robot) return;
   if (!T_odometry_robot.T_target_source)
     return m_complaints.say("an initial pose came before odometry", T_odometry_robot.problem);
@@ -145,57 +146,27 @@ std::optional<Isometry3d> MappingNode::inMap(const ros2::Header& header,
                                              const geometry_msgs_msg_dds__Pose_& pose,
                                              const std::string& what) {
   const std::string frame = ros2::textOf(header.frame_id), &map = m_parameters.node.mapFrame;
-  const Isometry3d T_frame_pose = isometryOf(pose);
-  Transforms::Answer T_map_frame{Isometry3d::Identity(), {}};
+  const auto& [p, q] = pose;
+  const Isometry3d T_frame_pose =
+      Eigen::Translation3d(p.x, p.y, p.z) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+  point_fields::Frames::Answer T_map_frame{Isometry3d::Identity(), {}};
   if (frame != map)
-    T_map_frame = m_transforms.find(map, frame, m_transforms.latest(map, frame).value_or(0));
+    T_map_frame = m_frames.find(map, frame, m_frames.latest(map, frame).value_or(0));
   if (T_map_frame.T_target_source && T_frame_pose.matrix().allFinite())
     return *T_map_frame.T_target_source * T_frame_pose;
   m_complaints.say(what + " cannot be understood", T_map_frame.problem);
   return std::nullopt;
 }
 
-auto MappingNode::placeOf(const WaitingScan& scan, std::string& problem, bool& isLost) const
-    -> std::optional<Placed> {
-  const std::string& base = m_parameters.node.baseFrame;
-  const auto robot = m_transforms.find(m_world, base, scan.stamp);
-  const auto points = m_transforms.find(base, scan.frame, scan.stamp);
-  problem = robot.T_target_source ? points.problem : robot.problem;
-  isLost = robot.isLost || points.isLost;
-  if (!robot.T_target_source || !points.T_target_source) return std::nullopt;
-  return Placed{*robot.T_target_source, *points.T_target_source * scan.T_frame_points};
-}
-
-/** It can be inserted as a whole, or has waited for long enough. */
-bool MappingNode::isDue(const WaitingScan& scan) {
-  if (m_endedAt && scan.came > *m_endedAt) return false;
-  const double waited = ros2::secondsOf(m_clock.now() - scan.cameAt);
-  if (waited >= m_parameters.node.transformTimeout || waited < 0) return true;
-  std::string problem;
-  bool isLost = false;
-  const bool isPlaced = placeOf(scan, problem, isLost).has_value();
-  return isLost || (isPlaced && (!scan.isComplete || scan.isComplete()));
-}
-
 bool MappingNode::insertNext() {
-  const auto scan = m_queue.take([this](const WaitingScan& waiting) { return isDue(waiting); });
-  if (!scan) return false;
-  std::string problem;
-  bool isLost = false;
-  if (const auto place = placeOf(*scan, problem, isLost)) try {
-      insert(*scan, *place);
-      return true;
-    } catch (const std::exception& e) {
-      problem = strict_files::messageOf(e);
-    }
-  ++m_leftOut;
-  m_complaints.say(scan->topic + ": scans are left out: " + problem);
-  return true;
+  return m_queue.insertNext(
+      [this](const WaitingScan& scan, semantic_slam::SensorScan seen,
+             const Isometry3d& T_world_robot) { insert(scan, std::move(seen), T_world_robot); });
 }
 
-void MappingNode::insert(const WaitingScan& scan, const Placed& place) {
-  std::vector<semantic_slam::SensorScan> seen = {scan.read()};
-  seen[0].T_robot_sensor = place.second;
+void MappingNode::insert(const WaitingScan& scan, semantic_slam::SensorScan one,
+                         const Isometry3d& T_world_robot) {
+  const std::vector<semantic_slam::SensorScan> seen = {std::move(one)};
   const auto stamp = mrpt::Clock::fromDouble(ros2::secondsOf(scan.stamp));
   if (auto* navigator = m_driving ? m_driving->navigator() : nullptr) {
     navigator->update(*robotAt(scan.stamp));
@@ -203,20 +174,21 @@ void MappingNode::insert(const WaitingScan& scan, const Placed& place) {
     m_driving->learnSensor(seen[0]);
   } else {
     const double seconds = m_seconds + m_scanClock.secondsUntil(stamp);
-    m_mapper.insert(seen, m_mapper.locate(seen, place.first, seconds), seconds);
+    m_mapper.insert(seen, m_mapper.locate(seen, T_world_robot, seconds), seconds);
     m_seconds = seconds;
   }
   m_scanClock.note(stamp);
   ++m_scans;
   m_stamp = scan.stamp;
-  m_T_world_robot = place.first;
+  m_T_world_robot = T_world_robot;
   m_isNew = true;
   m_came.push_back(scan.came);
   details() << scan.topic << ": " << seen[0].cloud.size() << " points inserted" << std::endl;
 }
 
 std::optional<semantic_navigation::RobotState> MappingNode::robotAt(Stamp stamp) const {
-  const auto T = m_transforms.find(m_world, m_parameters.node.baseFrame, stamp).T_target_source;
+  const auto T = m_frames.find(m_parameters.node.worldFrame(), m_parameters.node.baseFrame, stamp)
+                     .T_target_source;
   if (!T) return std::nullopt;
   const Speeds speeds = m_sensors.speeds();
   return semantic_navigation::RobotState{{planar(*T), speeds.forward, speeds.turn}, *T};
@@ -250,13 +222,16 @@ void MappingNode::publish() {
 void MappingNode::publishCorrection() {
   const bool isKnown = m_scans > 0 || !m_mapper.T_map_odometry().isApprox(Isometry3d::Identity());
   if (!m_parameters.node.slam || !isKnown) return;
-  const auto latest = m_transforms.latest(m_world, m_parameters.node.baseFrame);
+  const auto latest = m_frames.latest(m_parameters.node.worldFrame(), m_parameters.node.baseFrame);
   const Stamp stamp = std::max(latest.value_or(m_stamp), m_stamp);
   if (m_correctedAt && *m_correctedAt == stamp) return;
   m_correctedAt = stamp;
+  const Isometry3d& T = m_mapper.T_map_odometry();
+  const Eigen::Quaterniond q(T.linear());
   std::vector<ros2::TransformStamped> transforms = {
-      {ros2::headerOf(stamp, m_parameters.node.mapFrame), ros2::textOf(m_world),
-       transformOf(m_mapper.T_map_odometry())}};
+      {ros2::headerOf(stamp, m_parameters.node.mapFrame),
+       ros2::textOf(m_parameters.node.worldFrame()),
+       {{T(0, 3), T(1, 3), T(2, 3)}, {q.x(), q.y(), q.z(), q.w()}}}};
   ros2::TFMessage message{};
   ros2::refer(message.transforms, transforms);
   m_writesTransforms.write(message);
@@ -264,7 +239,7 @@ void MappingNode::publishCorrection() {
 
 void MappingNode::saySummary() const {
   m_complaints.sum();
-  notes() << m_scans << " scans inserted, " << m_leftOut << " left out";
+  notes() << m_scans << " scans inserted, " << m_queue.leftOut() << " left out";
   if (!m_latencies.empty())
     notes() << std::fixed << std::setprecision(0)
             << "; from a scan's message to the map's: " << measuring::quantile(m_latencies, 0.5)

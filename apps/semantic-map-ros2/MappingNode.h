@@ -46,12 +46,9 @@ class MappingNode {
   void saySummary() const;
 
  private:
-  using Placed =
-      std::pair<Eigen::Isometry3d, Eigen::Isometry3d>;  ///< T_world_robot, T_robot_points
-  std::optional<Placed> placeOf(const WaitingScan& scan, std::string& problem, bool& isLost) const;
-  bool isDue(const WaitingScan& scan);
   bool insertNext();
-  void insert(const WaitingScan& scan, const Placed& place);
+  void insert(const WaitingScan& scan, semantic_slam::SensorScan seen,
+              const Eigen::Isometry3d& T_world_robot);
   std::optional<semantic_navigation::RobotState> robotAt(ros2::Stamp stamp) const;
   void hear();
   void serve();
@@ -66,11 +63,10 @@ class MappingNode {
                                          const std::string& what);
 
   Parameters m_parameters;
-  std::string m_world;  ///< the frame in which /tf has the robot
   ros2::Node m_node;
   Complaints m_complaints;
   NodeClock m_clock;
-  Transforms m_transforms;
+  point_fields::Frames m_frames{true};
   ScanQueue m_queue;
   semantic_slam::Mapper m_mapper;
   MapMessages m_messages;
@@ -82,14 +78,13 @@ class MappingNode {
 
   semantic_map::ObservationClock m_scanClock;
   double m_seconds = 0;  ///< that passed, by the scans
-  std::size_t m_scans = 0, m_leftOut = 0;
+  std::size_t m_scans = 0;
   ros2::Stamp m_stamp = 0;                           ///< of the last scan
   std::optional<Eigen::Isometry3d> m_T_world_robot;  ///< then
   bool m_isNew = false;                              ///< the map has what was not published
   std::vector<std::chrono::steady_clock::time_point> m_came;  ///< of scans not published
   std::vector<double> m_latencies;                            ///< ms, of the last scans
   std::chrono::steady_clock::time_point m_publishedAt, m_steppedAt, m_lookedAt;
-  std::optional<std::chrono::steady_clock::time_point> m_endedAt;  ///< later scans do not count
   std::optional<ros2::Stamp> m_correctedAt;
 
   Sensors m_sensors;

@@ -18,6 +18,9 @@ struct NodeOptions {
   std::string order;              ///< file of the order of classes; empty: no grid, no paths
   std::string costs;              ///< by rank, with commas between; empty: evenly from 0 to 90
 
+  /** In which it is known where the robot is. */
+  const std::string& worldFrame() const { return slam ? odomFrame : mapFrame; }
+
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;

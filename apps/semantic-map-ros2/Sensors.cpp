@@ -1,7 +1,6 @@
 #include "Sensors.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -12,10 +11,10 @@ namespace semantic_map_ros2 {
 
 using labeled_cloud::LabelImage;
 using point_fields::cloudOf;
+using Kind = point_fields::Frames::Kind;
 using point_fields::RawCamera;
 using point_fields::RawCloud;
 using point_fields::RawImage;
-using ros2::Stamp;
 using ros2::textOf;
 using semantic_slam::SensorScan;
 using semantic_types::ClassTable;
@@ -40,17 +39,15 @@ RawCloud rawOf(const ros2::PointCloud2& message) {
 }
 
 SensorScan read(const ros2::LaserScan& message) {
+  const point_fields::RawLaserScan raw{
+      message.angle_min,
+      message.angle_increment,
+      message.time_increment,
+      message.range_min,
+      message.range_max,
+      {message.ranges._buffer, message.ranges._buffer + message.ranges._length}};
   SensorScan scan;
-  for (std::uint32_t i = 0; i < message.ranges._length; ++i) {
-    const float range = message.ranges._buffer[i];
-    if (!(range >= message.range_min && range <= message.range_max) || !std::isfinite(range))
-      continue;
-    const float angle = message.angle_min + static_cast<float>(i) * message.angle_increment;
-    if (!std::isfinite(angle)) continue;
-    scan.cloud.points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0f);
-    if (message.time_increment > 0 && std::isfinite(message.time_increment))
-      scan.times.push_back(static_cast<float>(i) * message.time_increment);
-  }
+  scan.cloud = cloudOf(raw, scan.times);
   return scan;
 }
 
@@ -91,11 +88,11 @@ Stamp NodeClock::now() const {
 
 Sensors::Sensors(ros2::Node& node, const NodeOptions& options, const ClassTable& classes,
                  const labeled_cloud::ScanConverterOptions& conversion, NodeClock& clock,
-                 Transforms& transforms, ScanQueue& queue, Complaints& complaints)
+                 point_fields::Frames& frames, ScanQueue& queue, Complaints& complaints)
     : m_options(options),
       m_classes(classes),
       m_clock(clock),
-      m_transforms(transforms),
+      m_frames(frames),
       m_queue(queue),
       m_complaints(complaints),
       m_labeler(std::make_shared<PixelLabels>()),
@@ -103,13 +100,13 @@ Sensors::Sensors(ros2::Node& node, const NodeOptions& options, const ClassTable&
       m_hearsClock(node, "/clock", {false, false, 1},
                    [this](auto message) { m_clock.set(ros2::stampOf(message->clock)); }),
       m_hearsTransforms(node, "/tf", kTransforms,
-                        [this](auto message) { addTransforms(*message, false); }),
+                        [this](auto message) { addTransforms(*message, Kind::Moving); }),
       m_hearsStatic(node, "/tf_static", kStaticTransforms,
-                    [this](auto message) { addTransforms(*message, true); }),
+                    [this](auto message) { addTransforms(*message, Kind::Static); }),
       m_hearsOdometry(node, "odom", kSensor,
                       [this](auto message) {
-                        const std::string problem = m_transforms.add(*message);
-                        if (!problem.empty()) m_complaints.say(problem);
+                        add(*message, message->pose.pose.position, message->pose.pose.orientation,
+                            Kind::Odometers);
                         const std::lock_guard<std::mutex> lock(m_mutex);
                         m_speeds = {message->twist.twist.linear.x, message->twist.twist.angular.z};
                       }),
@@ -130,24 +127,30 @@ Speeds Sensors::speeds() const {
   return m_speeds;
 }
 
-void Sensors::addTransforms(const ros2::TFMessage& message, bool areStatic) {
+template <class Message, class Vector, class Rotation>
+void Sensors::add(const Message& message, const Vector& t, const Rotation& r, Kind kind) {
+  const std::string problem = m_frames.add({ros2::stampOf(message.header.stamp),
+                                            textOf(message.header.frame_id),
+                                            textOf(message.child_frame_id),
+                                            {t.x, t.y, t.z},
+                                            {r.w, r.x, r.y, r.z}},
+                                           kind);
+  if (!problem.empty()) m_complaints.say(problem);
+}
+
+void Sensors::addTransforms(const ros2::TFMessage& message, Kind kind) {
   for (std::uint32_t i = 0; i < message.transforms._length; ++i) {
-    const std::string problem = m_transforms.add(message.transforms._buffer[i], areStatic);
-    if (!problem.empty()) m_complaints.say(problem);
+    const ros2::TransformStamped& transform = message.transforms._buffer[i];
+    add(transform, transform.transform.translation, transform.transform.rotation, kind);
   }
   m_queue.wake();
 }
 
 void Sensors::add(WaitingScan scan, const ros2::Header& header, std::size_t bytes) {
   scan.frame = textOf(header.frame_id);
-  if (!scan.frame.empty() && scan.frame[0] == '/') scan.frame.erase(0, 1);
   scan.stamp = ros2::stampOf(header.stamp);
-  scan.cameAt = m_clock.now();
-  scan.came = std::chrono::steady_clock::now();
   scan.bytes = bytes;
-  const std::string topic = scan.topic;
-  if (m_queue.push(std::move(scan)) > 0)
-    m_complaints.say(topic + ": scans come faster than they are inserted; the oldest are left out");
+  m_queue.push(std::move(scan));
 }
 
 void Sensors::addCloud(std::shared_ptr<const ros2::PointCloud2> message) {

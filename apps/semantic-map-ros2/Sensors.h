@@ -9,7 +9,7 @@
 #include "Complaints.h"
 #include "Parameters.h"
 #include "ScanQueue.h"
-#include "Transforms.h"
+#include "point_fields/Frames.h"
 #include "ros2/Node.h"
 
 namespace semantic_map_ros2 {
@@ -39,7 +39,7 @@ class Sensors {
   /** All must outlive it. */
   Sensors(ros2::Node& node, const NodeOptions& options, const semantic_types::ClassTable& classes,
           const labeled_cloud::ScanConverterOptions& conversion, NodeClock& clock,
-          Transforms& transforms, ScanQueue& queue, Complaints& complaints);
+          point_fields::Frames& frames, ScanQueue& queue, Complaints& complaints);
   ~Sensors();
 
   Speeds speeds() const;
@@ -52,7 +52,10 @@ class Sensors {
   void addLaser(std::shared_ptr<const ros2::LaserScan> message);
   void addDepth(Depth message);
   void addLabels(std::shared_ptr<const ros2::Image> message);
-  void addTransforms(const ros2::TFMessage& message, bool areStatic);
+  template <class Message, class Vector, class Rotation>
+  void add(const Message& message, const Vector& translation, const Rotation& rotation,
+           point_fields::Frames::Kind kind);
+  void addTransforms(const ros2::TFMessage& message, point_fields::Frames::Kind kind);
   bool hasLabels(ros2::Stamp stamp) const;
   semantic_slam::SensorScan read(const ros2::PointCloud2& message);
   semantic_slam::SensorScan read(const ros2::Image& depth);
@@ -60,7 +63,7 @@ class Sensors {
   const NodeOptions& m_options;
   semantic_types::ClassTable m_classes;
   NodeClock& m_clock;
-  Transforms& m_transforms;
+  point_fields::Frames& m_frames;
   ScanQueue& m_queue;
   Complaints& m_complaints;
   std::shared_ptr<PixelLabels> m_labeler;

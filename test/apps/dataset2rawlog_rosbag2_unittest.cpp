@@ -237,6 +237,17 @@ TEST_F(Rosbag2, laserScansAreSeenFromTheirBeams) {
   EXPECT_LT((points(1)[1] - Vector3d(2.5, -5, 1)).norm(), 1e-4);
 }
 
+TEST_F(Rosbag2, laserScansWhoseBeamsTakeTimeHaveTheirTimes) {
+  const std::vector<BagMessage> bag = {
+      transformMessage("/tf", 100, "odom", "laser", at(0, 0, 0)),
+      transformMessage("/tf", 102, "odom", "laser", at(2, 0, 0)),
+      laserMessage("/scan", 101, "laser", 0, float(M_PI / 2), {2, INFINITY, 3}, 0.25f)};
+  const auto scans = scansOf(quoted(folder.write("a.mcap", mcapOf(bag, ""))), folder);
+  ASSERT_EQ(scans.size(), 1u);
+  EXPECT_EQ(scans[0].scan.times, (std::vector<float>{0, 0.5f}));
+  EXPECT_LT((scans[0].inMap(1) - Vector3d(-2, 0, 0)).norm(), 1e-5);
+}
+
 TEST_F(Rosbag2, whatIsWrongWithImagesIsNamed) {
   tableIn(folder);
   const auto failureWith = [&](const std::vector<BagMessage>& more,

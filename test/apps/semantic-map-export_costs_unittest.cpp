@@ -116,6 +116,35 @@ TEST_F(CostExport, aSmallRobotFitsWhereALargeOneDoesNot) {
   EXPECT_EQ(pixel("small.yaml", 2.9, 0.1)[0], 99);
 }
 
+/** A house of two storeys, 3 m apart, of road below and grass above; below there is a wall. */
+TEST_F(CostExport, aStoreyIsWhatIsAroundItsFloor) {
+  SemanticOcTree map(0.2, yard().classes());
+  for (const int storey : {1, 0}) {
+    LabeledCloud cloud;
+    for (double x = -3.9; x < 4; x += 0.1)
+      for (double y = -3.9; y < 4; y += 0.1) {
+        if (storey == 1 && x < -2) continue;
+        const bool isWall = storey == 0 && x > 2 && x < 2.4;
+        for (double z = 0.1; z < (isWall ? 2.8 : 0.2); z += 0.2) {
+          cloud.points.push_back(Eigen::Vector3d(x, y, z - 1.5).cast<float>());
+          cloud.classes.push_back(storey == 0 ? 1 : 2);
+        }
+      }
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation().z() = 3 * storey + 1.5;
+    for (int i = 0; i < 3; ++i) map.insert(cloud, T);
+  }
+  saveTree(map, path("map.semantic"));
+  succeeded(costs("low.yaml", {"--floor", "0.2", "--mode", "raw"}));
+  succeeded(costs("high.yaml", {"--floor", "3.2", "--mode", "raw"}));
+  EXPECT_EQ(pixel("low.yaml", 0.1, 0.1)[0], 0);      // road
+  EXPECT_EQ(pixel("high.yaml", 0.1, 0.1)[0], 90);    // grass
+  EXPECT_EQ(pixel("low.yaml", 2.1, 0.1)[0], 100);    // wall
+  EXPECT_EQ(pixel("high.yaml", 2.1, 0.1)[0], 90);    // above it
+  EXPECT_EQ(pixel("high.yaml", -3.1, 0.1)[0], 255);  // no floor there
+  expectRefusal(costs("a.yaml", {"--floor", "9"}), {"no drivable ground"});
+}
+
 TEST_F(CostExport, badInputIsRefusedByName) {
   const ProgramRun grey = costs("a.yaml", {"--mode", "grey"});
   EXPECT_EQ(grey.status, 64);

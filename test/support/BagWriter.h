@@ -114,10 +114,11 @@ inline BagMessage cameraMessage(const std::string& topic, double seconds, std::u
 
 /** Ranges from 0.1 to 20 m count. */
 inline BagMessage laserMessage(const std::string& topic, double seconds, const std::string& frame,
-                               float first, float step, const std::vector<float>& ranges) {
+                               float first, float step, const std::vector<float>& ranges,
+                               float timeStep = 0) {
   Cdr cdr;
   cdr.header(seconds, frame);
-  for (const float value : {first, 0.f, step, 0.f, 0.f, 0.1f, 20.f}) cdr.number(value);
+  for (const float value : {first, 0.f, step, timeStep, 0.f, 0.1f, 20.f}) cdr.number(value);
   cdr.number(std::uint32_t(ranges.size()));
   for (const float range : ranges) cdr.number(range);
   cdr.number(std::uint32_t(0));

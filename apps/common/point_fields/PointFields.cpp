@@ -192,4 +192,19 @@ LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField, const C
   return cloud;
 }
 
+LabeledCloud cloudOf(const RawLaserScan& raw, std::vector<float>& times) {
+  const bool hasTimes = raw.timeStep > 0 && std::isfinite(raw.timeStep);
+  LabeledCloud cloud;
+  times.clear();
+  for (std::size_t i = 0; i < raw.ranges.size(); ++i) {
+    const float range = raw.ranges[i], step = static_cast<float>(i);
+    const float angle = raw.firstAngle + step * raw.angleStep;
+    const bool isMet = range >= raw.leastRange && range <= raw.mostRange && std::isfinite(range);
+    if (!isMet || !std::isfinite(angle)) continue;
+    cloud.points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0f);
+    if (hasTimes) times.push_back(step * raw.timeStep);
+  }
+  return cloud;
+}
+
 }  // namespace point_fields

@@ -40,6 +40,16 @@ semantic_types::LabeledCloud cloudOf(const RawCloud& raw, const std::string& cla
  * since 1970 \throw std::runtime_error as cloudOf() */
 std::vector<float> timesOf(const RawCloud& raw, double stamp);
 
+/** A sensor_msgs/LaserScan as it came. */
+struct RawLaserScan {
+  float firstAngle = 0, angleStep = 0, timeStep = 0, leastRange = 0, mostRange = 0;  ///< rad, s, m
+  std::vector<float> ranges;
+};
+
+/** The points that its beams met, in its frame. \param times is set to when each was met, seconds
+ * after the message's stamp; empty: all at once */
+semantic_types::LabeledCloud cloudOf(const RawLaserScan& raw, std::vector<float>& times);
+
 /** Classes of a message's points or pixels by the numbers that they have; each number is looked up
  * once. */
 class NumberedClasses {

@@ -88,10 +88,10 @@ QosPointer toDds(const Qos& qos, const std::string& typeHash) {
   return dds;
 }
 
-dds_entity_t createTopic(const Node& node, const std::string& name,
-                         const dds_topic_descriptor_t& type) {
+dds_entity_t createTopic(const Node& node, const std::string& name, const Type& type) {
   return checked(
-      dds_create_topic(node.participant(), &type, ("rt" + name).c_str(), nullptr, nullptr), name);
+      dds_create_topic(node.participant(), &type.dds, ("rt" + name).c_str(), nullptr, nullptr),
+      name);
 }
 
 }  // namespace
@@ -163,17 +163,17 @@ void Node::lookAtWriters(std::vector<std::string>& problems) {
     for (const Reader* reader : m_readers) {
       if (!info[0].valid_data || "rt" + reader->m_name != textOf(writer->topic_name)) continue;
       const std::string type = textOf(writer->type_name);
-      if (type == reader->m_type.m_typename) continue;
+      if (type == reader->m_type.dds.m_typename) continue;
       problems.push_back(reader->m_name + ": somebody writes " + type +
-                         ", which is not heard; expected " + reader->m_type.m_typename);
+                         ", which is not heard; expected " + reader->m_type.dds.m_typename);
     }
     dds_return_loan(m_writers, samples, 1);
     samples[0] = nullptr;
   }
 }
 
-Reader::Reader(Node& node, const std::string& topic, const dds_topic_descriptor_t& type,
-               const Qos& qos, OnMessage onMessage)
+Reader::Reader(Node& node, const std::string& topic, const Type& type, const Qos& qos,
+               OnMessage onMessage)
     : m_node(node),
       m_type(type),
       m_qos(qos),
@@ -195,8 +195,8 @@ void Reader::open() {
   dds_listener_t* listener = dds_create_listener(this);
   dds_lset_data_available(
       listener, [](dds_entity_t reader, void* self) { static_cast<Reader*>(self)->take(reader); });
-  m_reader = dds_create_reader(m_node.participant(), m_topic,
-                               toDds(m_qos, typeHashOf(m_type)).get(), listener);
+  m_reader =
+      dds_create_reader(m_node.participant(), m_topic, toDds(m_qos, m_type.hash).get(), listener);
   dds_delete_listener(listener);
   checked(m_reader, m_name);
 }
@@ -225,11 +225,11 @@ void Reader::sayLosses(std::vector<std::string>& problems) const {
 }
 
 void Reader::take(dds_entity_t reader) {
-  const auto free = [this](void* m) { dds_sample_free(m, &m_type, DDS_FREE_ALL); };
+  const auto free = [this](void* m) { dds_sample_free(m, &m_type.dds, DDS_FREE_ALL); };
   for (;;) try {
-      void* sample = dds_alloc(m_type.m_size);
+      void* sample = dds_alloc(m_type.dds.m_size);
       if (!sample) throw std::bad_alloc();
-      std::memset(sample, 0, m_type.m_size);
+      std::memset(sample, 0, m_type.dds.m_size);
       const std::shared_ptr<void> message(sample, free);
       dds_sample_info_t info;
       if (dds_take(reader, &sample, &info, 1, 1) <= 0) return;
@@ -239,12 +239,11 @@ void Reader::take(dds_entity_t reader) {
     }
 }
 
-Writer::Writer(Node& node, const std::string& topic, const dds_topic_descriptor_t& type,
-               const Qos& qos)
+Writer::Writer(Node& node, const std::string& topic, const Type& type, const Qos& qos)
     : m_topic(createTopic(node, node.topic(topic), type)),
-      m_writer(checked(dds_create_writer(node.participant(), m_topic,
-                                         toDds(qos, typeHashOf(type)).get(), nullptr),
-                       topic)) {}
+      m_writer(checked(
+          dds_create_writer(node.participant(), m_topic, toDds(qos, type.hash).get(), nullptr),
+          topic)) {}
 
 Writer::~Writer() {
   dds_delete(m_writer);

@@ -60,7 +60,7 @@ class Reader {
  public:
   /** Is called by DDS's threads. */
   using OnMessage = std::function<void(std::shared_ptr<const void>)>;
-  Reader(Node& node, const std::string& topic, const dds_topic_descriptor_t& type, const Qos& qos,
+  Reader(Node& node, const std::string& topic, const Type& type, const Qos& qos,
          OnMessage onMessage);
   ~Reader();
   Reader(const Reader&) = delete;
@@ -77,7 +77,7 @@ class Reader {
   void take(dds_entity_t reader);
 
   Node& m_node;
-  const dds_topic_descriptor_t& m_type;
+  Type m_type;
   Qos m_qos;
   OnMessage m_onMessage;
   std::string m_name;  ///< of the topic, in full
@@ -92,7 +92,7 @@ class Subscription {
   /** \param onMessage is called by DDS's threads */
   Subscription(Node& node, const std::string& topic, const Qos& qos,
                std::function<void(std::shared_ptr<const Message>)> onMessage)
-      : m_reader(node, topic, descriptorOf<Message>(), qos,
+      : m_reader(node, topic, typeOf<Message>(), qos,
                  [onMessage = std::move(onMessage)](std::shared_ptr<const void> message) {
                    onMessage(std::static_pointer_cast<const Message>(std::move(message)));
                  }) {}
@@ -105,7 +105,7 @@ class Subscription {
 /** Writes a topic, whatever its message. */
 class Writer {
  public:
-  Writer(Node& node, const std::string& topic, const dds_topic_descriptor_t& type, const Qos& qos);
+  Writer(Node& node, const std::string& topic, const Type& type, const Qos& qos);
   ~Writer();
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
@@ -129,7 +129,7 @@ template <class Message>
 class Publication : public Writer {
  public:
   Publication(Node& node, const std::string& topic, const Qos& qos)
-      : Writer(node, topic, descriptorOf<Message>(), qos) {}
+      : Writer(node, topic, typeOf<Message>(), qos) {}
   bool write(const Message& message) { return Writer::write(&message); }
 };
 

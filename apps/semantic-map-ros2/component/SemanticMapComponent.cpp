@@ -11,7 +11,6 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <deque>
 #include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
 #include <octomap_msgs/msg/octomap.hpp>
 #include <rclcpp/rclcpp.hpp>
@@ -23,6 +22,7 @@
 
 #include "NodeMap.h"
 #include "Parameters.h"
+#include "ScanQueue.h"
 #include "point_fields/PointFields.h"
 
 namespace semantic_map_ros2 {
@@ -31,8 +31,7 @@ using geometry_msgs::msg::PoseWithCovarianceStamped;
 using octomap_msgs::msg::Octomap;
 using sensor_msgs::msg::PointCloud2;
 
-constexpr std::size_t kMostBytes = 500'000'000;  // of clouds that wait
-constexpr std::chrono::milliseconds kStep{20};   // between looks at them
+constexpr std::chrono::milliseconds kStep{20};  // between looks at them
 
 /** Maps the clouds of `points`, whose poses tf2 knows, by the runtime of semantic-map-ros2. It
  * publishes `~/occupied`, the compressed tree (`~/change`, `~/compressed`) and, with `slam`, the
@@ -51,10 +50,11 @@ class SemanticMapComponent : public rclcpp::Node {
         m_mapper(m_map, m_parameters.mapping()),
         m_voxels(m_map),
         m_tree(m_map),
-        m_clock(m_parameters.insertion.maxGap) {
+        m_scanClock(m_parameters.insertion.maxGap),
+        m_queue(m_parameters.node, surroundings()) {
     m_hears = create_subscription<PointCloud2>(
         "points", rclcpp::SensorDataQoS().keep_last(50),
-        [this](PointCloud2::ConstSharedPtr cloud) { wait(std::move(cloud)); });
+        [this](const PointCloud2::ConstSharedPtr& cloud) { add(cloud); });
     m_hearsPose = create_subscription<PoseWithCovarianceStamped>(
         "initialpose", 1,
         [this](PoseWithCovarianceStamped::ConstSharedPtr pose) { relocalizeAt(*pose); });
@@ -128,47 +128,17 @@ class SemanticMapComponent : public rclcpp::Node {
     RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "%s", problem.c_str());
   }
 
-  void wait(PointCloud2::ConstSharedPtr cloud) {
-    m_bytes += cloud->data.size();
-    m_waiting.push_back({std::move(cloud), now()});
-    while (m_bytes > kMostBytes && !m_waiting.empty()) {
-      warn("clouds come faster than they are inserted; the oldest are left out");
-      dropFirst();
-    }
+  void add(const PointCloud2::ConstSharedPtr& cloud) {
+    WaitingScan scan;
+    scan.topic = m_hears->get_topic_name();
+    scan.frame = cloud->header.frame_id;
+    scan.stamp = rclcpp::Time(cloud->header.stamp).nanoseconds();
+    scan.bytes = cloud->data.size();
+    scan.read = [this, cloud] { return read(*cloud); };
+    m_queue.push(std::move(scan));
   }
 
-  void dropFirst() {
-    m_bytes -= m_waiting.front().cloud->data.size();
-    m_waiting.pop_front();
-  }
-
-  /** Clouds wait for their transforms, as long as `transform_timeout` says. */
-  void insertWaiting() {
-    while (!m_waiting.empty()) {
-      const PointCloud2& cloud = *m_waiting.front().cloud;
-      const rclcpp::Time stamp(cloud.header.stamp, get_clock()->get_clock_type());
-      try {
-        insert(cloud, stamp);
-      } catch (const tf2::TransformException& e) {
-        const double waited = (now() - m_waiting.front().came).seconds();  // < 0: a bag began anew
-        if (waited >= 0 && waited < m_parameters.node.transformTimeout) return;
-        warn(std::string("a cloud is left out: ") + e.what());
-      } catch (const std::exception& e) {
-        warn("a cloud is left out: " + strict_files::messageOf(e));
-      }
-      dropFirst();
-    }
-  }
-
-  Eigen::Isometry3d transform(const std::string& target, const std::string& source,
-                              const rclcpp::Time& stamp) const {
-    return tf2::transformToEigen(m_transforms.lookupTransform(target, source, stamp));
-  }
-
-  void insert(const PointCloud2& message, const rclcpp::Time& stamp) {
-    const NodeOptions& node = m_parameters.node;
-    const auto T_world_robot = transform(worldFrame(), node.baseFrame, stamp);
-    const auto T_robot_cloud = transform(node.baseFrame, message.header.frame_id, stamp);
+  semantic_slam::SensorScan read(const PointCloud2& message) {
     point_fields::RawCloud raw;
     for (const auto& f : message.fields) raw.fields.push_back({f.name, f.offset, f.datatype});
     raw.width = message.width, raw.height = message.height;
@@ -176,21 +146,43 @@ class SemanticMapComponent : public rclcpp::Node {
     raw.isBigEndian = message.is_bigendian;
     raw.data = message.data.data(), raw.size = message.data.size();
     std::string problem;
-    semantic_slam::SensorScan scan{cloudOf(raw, node.classField, m_map.classes(), problem),
-                                   T_robot_cloud};
-    scan.times = timesOf(raw, stamp.seconds());
+    semantic_slam::SensorScan scan;
+    scan.cloud = cloudOf(raw, m_parameters.node.classField, m_map.classes(), problem);
+    scan.times = timesOf(raw, rclcpp::Time(message.header.stamp).seconds());
     if (!problem.empty()) warn(problem);
-    const auto time = mrpt::Clock::fromDouble(stamp.seconds());
-    m_seconds += m_clock.secondsUntil(time);
-    m_clock.note(time);
-    m_mapper.insert(scan, T_world_robot, m_seconds);
-    ++m_scans;
-    m_stamp = stamp;
-    if (node.slam) sayCorrection();
+    return scan;
   }
 
-  const std::string& worldFrame() const {
-    return m_parameters.node.slam ? m_parameters.node.odomFrame : m_parameters.node.mapFrame;
+  Surroundings surroundings() {
+    const auto find = [this](const std::string& target, const std::string& source,
+                             Stamp stamp) -> Surroundings::Answer {
+      try {
+        return {transform(target, source, rclcpp::Time(stamp)), {}};
+      } catch (const tf2::TransformException& e) {
+        return {{}, e.what()};
+      }
+    };
+    return {find, [this] { return Stamp(now().nanoseconds()); },
+            [this](const std::string& what) { warn(what); }};
+  }
+
+  void insertWaiting() {
+    while (m_queue.insertNext([this](const WaitingScan& waiting, const auto& scan,
+                                     const Eigen::Isometry3d& T_world_robot) {
+      const auto time = mrpt::Clock::fromDouble(double(waiting.stamp) * 1e-9);
+      m_seconds += m_scanClock.secondsUntil(time);
+      m_scanClock.note(time);
+      m_mapper.insert(scan, T_world_robot, m_seconds);
+      ++m_scans;
+      m_stamp = rclcpp::Time(waiting.stamp);
+      if (m_parameters.node.slam) sayCorrection();
+    }))
+      continue;
+  }
+
+  Eigen::Isometry3d transform(const std::string& target, const std::string& source,
+                              const rclcpp::Time& stamp) const {
+    return tf2::transformToEigen(m_transforms.lookupTransform(target, source, stamp));
   }
 
   void sayCorrection() {
@@ -198,7 +190,7 @@ class SemanticMapComponent : public rclcpp::Node {
         tf2::eigenToTransform(m_mapper.T_map_odometry());
     correction.header.stamp = m_stamp;
     correction.header.frame_id = m_parameters.node.mapFrame;
-    correction.child_frame_id = worldFrame();
+    correction.child_frame_id = m_parameters.node.worldFrame();
     m_corrects.sendTransform(correction);
   }
 
@@ -206,7 +198,8 @@ class SemanticMapComponent : public rclcpp::Node {
     const NodeOptions& node = m_parameters.node;
     if (!node.slam) return warn("an initial pose came, but without slam tf2 has the robot");
     const auto T_map_frame = transform(node.mapFrame, message.header.frame_id, rclcpp::Time());
-    const auto latest = m_transforms.lookupTransform(worldFrame(), node.baseFrame, rclcpp::Time());
+    const auto latest =
+        m_transforms.lookupTransform(node.worldFrame(), node.baseFrame, rclcpp::Time());
     Eigen::Isometry3d T_frame_robot;
     tf2::fromMsg(message.pose.pose, T_frame_robot);
     if (!T_frame_robot.matrix().allFinite()) return warn("an initial pose is no pose");
@@ -285,14 +278,9 @@ class SemanticMapComponent : public rclcpp::Node {
   TreeTeller m_tree;
   using Readers = std::set<std::array<std::uint8_t, RMW_GID_STORAGE_SIZE>>;
   Readers m_told;  ///< of ~/compressed
-  semantic_map::ObservationClock m_clock;
-  struct Waiting {
-    PointCloud2::ConstSharedPtr cloud;
-    rclcpp::Time came;
-  };
-  std::deque<Waiting> m_waiting;
-  std::size_t m_bytes = 0;  ///< of those that wait
-  double m_seconds = 0;     ///< that passed, by the clouds
+  semantic_map::ObservationClock m_scanClock;
+  double m_seconds = 0;  ///< that passed, by the clouds
+  ScanQueue m_queue;
   std::size_t m_scans = 0, m_published = 0;
   rclcpp::Time m_stamp;  ///< of the last cloud
   tf2_ros::Buffer m_transforms{get_clock()};

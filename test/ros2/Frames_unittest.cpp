@@ -1,4 +1,4 @@
-#include "Transforms.h"
+#include "point_fields/Frames.h"
 
 #include <gtest/gtest.h>
 
@@ -8,18 +8,17 @@ using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Translation3d;
 using Eigen::Vector3d;
-using ros2::Stamp;
-using semantic_map_ros2::Transforms;
+using point_fields::Frames;
+using point_fields::Stamp;
+using Kind = Frames::Kind;
 
 namespace {
 
 constexpr Stamp kSecond = 1'000'000'000;
 
-std::string add(Transforms& all, const std::string& parent, const std::string& child, Stamp stamp,
-                const Isometry3d& T, bool isStatic = false) {
-  return all.add(
-      {ros2::headerOf(stamp, parent), ros2::textOf(child), semantic_map_ros2::transformOf(T)},
-      isStatic);
+std::string add(Frames& all, const std::string& parent, const std::string& child, Stamp stamp,
+                const Isometry3d& T, Kind kind = Kind::Moving) {
+  return all.add({stamp, parent, child, T.translation(), Eigen::Quaterniond(T.linear())}, kind);
 }
 
 Isometry3d at(double x, double turn = 0) {
@@ -28,12 +27,12 @@ Isometry3d at(double x, double turn = 0) {
 
 }  // namespace
 
-TEST(RosTransforms, leadFromFrameToFrameInBetweenStamps) {
-  Transforms all;
-  add(all, "map", "odom", 0, at(10), true);
+TEST(Frames, leadFromFrameToFrameInBetweenStamps) {
+  Frames all(true);
+  add(all, "map", "odom", 0, at(10), Kind::Static);
   add(all, "odom", "base", 5 * kSecond, at(0));
   add(all, "odom", "base", 6 * kSecond, at(2, 1));
-  add(all, "base", "lidar", 0, at(0.5), true);
+  add(all, "base", "lidar", 0, at(0.5), Kind::Static);
   const auto T = all.find("map", "lidar", 5 * kSecond + kSecond / 2).T_target_source;
   ASSERT_TRUE(T);
   EXPECT_TRUE(T->isApprox(at(11, 0.5) * at(0.5), 1e-12));
@@ -43,8 +42,8 @@ TEST(RosTransforms, leadFromFrameToFrameInBetweenStamps) {
   EXPECT_FALSE(all.latest("map", "odom"));
 }
 
-TEST(RosTransforms, sayWhetherToWait) {
-  Transforms all;
+TEST(Frames, sayWhetherToWait) {
+  Frames all(true);
   EXPECT_TRUE(
       contains(all.find("map", "base", 0).problem, "no transform connects 'map' and 'base'"));
   EXPECT_FALSE(all.find("map", "base", 0).isLost);
@@ -55,8 +54,8 @@ TEST(RosTransforms, sayWhetherToWait) {
   EXPECT_TRUE(all.find("map", "base", 4 * kSecond).isLost);
 }
 
-TEST(RosTransforms, forgetWhatIsOldAndWhatWasBeforeStampsWentBack) {
-  Transforms all;
+TEST(Frames, forgetWhatIsOldAndWhatWasBeforeStampsWentBack) {
+  Frames all(true);
   for (int s = 0; s < 100; ++s) add(all, "map", "base", s * kSecond, at(s));
   EXPECT_TRUE(all.find("map", "base", 60 * kSecond).isLost);
   EXPECT_TRUE(all.find("map", "base", 80 * kSecond).T_target_source);
@@ -65,29 +64,34 @@ TEST(RosTransforms, forgetWhatIsOldAndWhatWasBeforeStampsWentBack) {
   EXPECT_TRUE(all.find("map", "base", 3 * kSecond).T_target_source);
 }
 
-TEST(RosTransforms, refuseWhatIsNone) {
-  Transforms all;
+TEST(Frames, refuseWhatIsNone) {
+  Frames all(true);
   add(all, "a", "b", 0, at(0));
   EXPECT_TRUE(contains(add(all, "b", "a", 0, at(0)), "ring"));
   EXPECT_TRUE(contains(add(all, "c", "c", 0, at(0)), "no two frames"));
   EXPECT_TRUE(contains(add(all, "c", "d", 0, at(NAN)), "no pose"));
-  const std::string parent = "c", child = "d";
-  EXPECT_TRUE(
-      contains(all.add({ros2::headerOf(0, parent), ros2::textOf(child), {}}, false), "no pose"));
+  EXPECT_TRUE(contains(all.add({0, "c", "d", {0, 0, 0}, {0, 0, 0, 0}}, Kind::Moving), "no pose"));
 }
 
-TEST(RosTransforms, odometersCountWhereTfDoesNotTell) {
-  Transforms all;
-  const std::string odom = "odom", base = "base";
-  ros2::Odometry message{};
-  message.header = ros2::headerOf(0, odom);
-  message.child_frame_id = ros2::textOf(base);
-  message.pose.pose.orientation.w = 1;
-  message.pose.pose.position.x = 3;
-  all.add(message);
+TEST(Frames, odometersCountWhereTfDoesNotTell) {
+  Frames all(true);
+  add(all, "odom", "base", 0, at(3), Kind::Odometers);
   EXPECT_EQ(all.find("odom", "base", 0).T_target_source->translation().x(), 3);
-  add(all, "footprint", "base", 0, at(1), true);
-  all.add(message);
+  add(all, "footprint", "base", 0, at(1), Kind::Static);
+  add(all, "odom", "base", 0, at(3), Kind::Odometers);
   EXPECT_FALSE(all.find("odom", "base", 0).T_target_source);
   EXPECT_TRUE(all.find("footprint", "base", 0).T_target_source);
+}
+
+TEST(Frames, ofABagStayForAsLongAsItIs) {
+  Frames all(false);
+  for (int s = 0; s < 100; ++s) add(all, "/odom", "/base", s * kSecond, at(s));
+  add(all, "map", "odom", 0, at(0), Kind::Static);
+  add(all, "base", "lidar", 0, at(0), Kind::Static);
+  EXPECT_TRUE(all.find("odom", "base", kSecond).T_target_source->isApprox(at(1)));
+  EXPECT_TRUE(contains(add(all, "other", "base", kSecond, at(7)), "another parent"));
+  EXPECT_TRUE(all.find("odom", "base", kSecond).T_target_source->isApprox(at(1)));
+  EXPECT_EQ(all.robotOf("/lidar"), "base");
+  EXPECT_EQ(all.rootOf("lidar"), "map");
+  EXPECT_EQ(all.robotOf("map"), "");
 }
