@@ -24,7 +24,7 @@ struct Cli {
 
   Cli() {
     app.require_subcommand(1);
-    app.set_help_all_flag("--help-all", "The same with the options of all commands");
+    app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
     addSemanticKitti();
     addTum();
     addPcd();
@@ -73,7 +73,8 @@ struct Cli {
     addClasses(command);
     addNoLabels(command, "The scans without their labels");
     command->add_flag("--images", conversion.images, "The camera's images (image_2/) come along");
-    command->add_option("SEQUENCE_DIR", source, "velodyne/, labels/, calib.txt ...")->required();
+    command->add_option("SEQUENCE_DIR", source, "Folder with velodyne/, labels/, calib.txt ...")
+        ->required();
   }
 
   void addTum() {
@@ -84,7 +85,8 @@ struct Cli {
         });
     addClasses(command);
     addNoLabels(command, "Depth and color only");
-    command->add_option("DIR", source, "depth.txt, label.txt, groundtruth.txt ...")->required();
+    command->add_option("DIR", source, "Folder with depth.txt, label.txt, groundtruth.txt ...")
+        ->required();
   }
 
   void addPcd() {
@@ -104,7 +106,9 @@ struct Cli {
       conversion.labels = false;
       return convertCarmen(source, conversion);
     });
-    command->add_option("LOG", source, "FLASER, RLASER, RAWLASER1, ROBOTLASER1, ODOM, PARAM")
+    command
+        ->add_option("LOG", source,
+                     "Log with lines FLASER, RLASER, RAWLASER1, ROBOTLASER1, ODOM, PARAM")
         ->required();
   }
 

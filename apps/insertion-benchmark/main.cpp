@@ -60,13 +60,13 @@ struct Cli {
                   {"all", InsertionOptions::Rays::All},
                   {"endpoints", InsertionOptions::Rays::EndVoxels}});
     addNumber(app, "--terms", settings.terms, strict_files::between(1, 8),
-              "Information terms to keep up to date");
+              "Classes whose information the compressed tree keeps, each with its G-values");
     addNumber(app, "--threads", settings.threads, strict_files::between(1, 256), "Our threads");
     addNumber(app, "--repeats", repeats, strict_files::between(1, 1000),
               "Measurements of each runner");
     app.add_option("--only", only,
                    "Measure only runners whose names contain this, and the bare traversal")
-        ->type_name("TEXT");
+        ->type_name("NAME");
   }
 };
 

@@ -39,17 +39,18 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", map, "A map's own file (.semantic)")->required();
+    app.add_option("MAP", map, "Map (.semantic)")->required();
     app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
     app.add_option("--weights", weights, "What the compressed tree keeps (YAML)")->required();
-    app.add_option("--solution", solution, "Which of the weights; none: the first")
+    app.add_option("--solution", solution,
+                   "Name of one solution in the weights; without: the first")
         ->type_name("NAME");
     outputs.add(app, output, "FILE", "Table of all searches (CSV)")->required();
     addNumber(app, "--instances", instances, strict_files::above(0), "Pairs of start and goal");
     addNumber(app, "--vertices", vertices, strict_files::above(0),
-              "Of each graph; of halton, draws");
+              "Vertices of each graph; for halton, draws");
     addNumber(app, "--min-distance", minDistance, strict_files::above(0), "From start to goal, m");
-    app.add_option("--seed", seed, "Other instances")->capture_default_str();
+    app.add_option("--seed", seed, "Seed of the pairs")->capture_default_str();
   }
 };
 

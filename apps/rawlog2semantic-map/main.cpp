@@ -77,7 +77,7 @@ struct Cli {
     app.add_flag_callback("-v,--verbose", beVerbose, "Say what became of each observation");
     auto* upkeep =
         app.add_flag("--compare-upkeep", compareUpkeep,
-                     "Also time each insertion without keeping the abstraction up to date");
+                     "Also time each insertion without keeping the compressed tree up to date");
     auto* corrected = app.add_flag("--slam", slam,
                                    "Correct the poses: register scans to each other, close loops; "
                                    "for LiDARs, RGB-D cameras, laser scanners")
@@ -124,7 +124,7 @@ struct Cli {
     outputs.addOther(app.add_option("--preview", preview,
                                     "Folder for pictures: images with their labels and points")
                          ->type_name("FOLDER"));
-    app.add_option("--preview-every", previewEvery, "Make pictures of every N-th scan")
+    app.add_option("--preview-every", previewEvery, "With N: make pictures of every N-th scan")
         ->check(isNumber(strict_files::above(0)));
   }
 };

@@ -96,10 +96,9 @@ struct Cli {
         ->required();
     app.add_option(
         "--made-from", madeFrom,
-        "Rawlogs that the maps were made from: two more rows tell how good mere counts of their "
-        "labels are");
+        "Rawlogs that the maps were made from: adds two rows, for counting their labels alone");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
-    app.add_option("--max-range", maxRange, "Points farther from the sensor are not asked for, m")
+    app.add_option("--max-range", maxRange, "Leave out points farther from the sensor than this, m")
         ->check(isNumber(strict_files::above(0)));
     strict_files::OptionList list;
     smoothing.describe(list);

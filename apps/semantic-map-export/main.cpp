@@ -274,7 +274,8 @@ struct Cli {
                      "The vehicle (YAML); without: a small robot")
         ->needs(order);
     addChoice<CostMode>(
-        costs->add_option("--mode", options.costs.mode, "map_server's mode of the picture"),
+        costs->add_option("--mode", options.costs.mode,
+                          "Mode in which map_server reads the picture"),
         {{"trinary", CostMode::Trinary}, {"scale", CostMode::Scale}, {"raw", CostMode::Raw}})
         ->needs(order);
   }

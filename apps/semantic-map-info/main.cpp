@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -127,6 +128,15 @@ ordered_json describe(semantic_octree::StoredMap& stored, const std::filesystem:
   return description;
 }
 
+/** "hit_probability" of "hitProbability". */
+std::string nameInFiles(const std::string& camelCase) {
+  std::string name;
+  for (const unsigned char c : camelCase)
+    name += std::isupper(c) ? std::string("_") + static_cast<char>(std::tolower(c))
+                            : std::string(1, static_cast<char>(c));
+  return name;
+}
+
 /** Prints a description for people. \param d what describe() returned */
 void printText(const std::string& name, const ordered_json& d, std::ostream& out) {
   out << name << "\n"
@@ -140,14 +150,16 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
       << "  filter       ";
   for (const auto& [key, value] : d["filter"].items())
     if (!value.is_object())
-      out << " " << key << " " << (value.is_string() ? value.get<std::string>() : value.dump());
+      out << " " << nameInFiles(key) << " "
+          << (value.is_string() ? value.get<std::string>() : value.dump());
   const ordered_json& calibration = d["filter"]["calibration"];
-  out << std::setprecision(3) << "\n  calibration   probabilities of classes to the power of "
-      << calibration["power"].get<double>() << ", " << 100 * calibration["shared"].get<double>()
-      << " % of them shared by the voxel's classes" << std::setprecision(6);
+  out << std::setprecision(3)
+      << "\n  calibration   the filter's class probabilities to the power of "
+      << calibration["power"].get<double>() << "; " << 100 * calibration["shared"].get<double>()
+      << " % go evenly to the classes named in the voxel" << std::setprecision(6);
   if (d.contains("folder")) printFolder(d["folder"], out);
   if (d.contains("clock")) printTime(d, out);
-  out << "\n  occupied voxels by likeliest class (of " << d["classes"].size() << " classes)\n";
+  out << "\n  occupied voxels by likeliest class (the table has " << d["classes"].size() << ")\n";
   const auto line = [&out](const std::string& id, const ordered_json& voxels,
                            const std::string& label) {
     out << std::setw(7) << id << " " << std::setw(10) << voxels << "  " << label << "\n";

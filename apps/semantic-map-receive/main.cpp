@@ -181,7 +181,8 @@ struct Cli {
     addNumber(app, "--lose", reception.loss, strict_files::between(0, 0.99),
               "Try a bad radio: lose this share of what goes to the sender");
     app.add_option("--seed", reception.seed, "Seed of the losses")->capture_default_str();
-    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of foreign datagrams");
+    app.add_flag_callback("-v,--verbose", beVerbose,
+                          "Report datagrams that do not belong to the session");
   }
 };
 

@@ -35,7 +35,7 @@ struct Cli {
                    "Make no map, but keep a copy of this node's compressed tree: /semantic_map")
         ->type_name("NAME");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
-    app.footer("As ROS has it: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
+    app.footer("ROS arguments: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");
   }
 };
 

@@ -318,7 +318,8 @@ struct Cli {
               "Try a bad radio: lose this share of the datagrams, send some twice, some late");
     app.add_option("--seed", station.seed, "Seed of the losses")->capture_default_str();
     app.add_flag_callback("-q,--quiet", beQuiet, "Say nothing but errors");
-    app.add_flag_callback("-v,--verbose", beVerbose, "Tell of foreign datagrams");
+    app.add_flag_callback("-v,--verbose", beVerbose,
+                          "Report datagrams that do not belong to the session");
   }
 };
 

@@ -96,7 +96,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_flag("--top", view.top, "From above, north up")->excludes(from);
   std::map<std::string, map_view::ViewColoring> colorings;
   for (const auto& [name, value] : choicesOf(map_view::ViewColoring())) colorings[name] = value;
-  addChoice(app.add_option("--color", view.style.coloring, "What the colors of cells mean"),
+  addChoice(app.add_option("--color", view.style.coloring, "What the colors of cells show"),
             colorings);
   auto* clip = app.add_option_function<std::string>(
       "--clip", [this](const std::string& text) { readClip(text, *this); },
@@ -110,8 +110,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_flag("--unknown", view.style.unknownSpace,
                "Show unknown space within the map's bounding box, or the box of --clip");
   app.add_option("--weights", weights,
-                 "Where the sliders of the compression begin: the first solution of such a file "
-                 "(YAML, as for semantic-map-compress)");
+                 "Weights with which the compression begins (YAML, as for semantic-map-compress): "
+                 "the first solution");
   app.add_option("--order", order,
                  "Classes from best to worst, for paths (YAML, as for semantic-map-plan); without: "
                  "those that are checked in the window");

@@ -22,7 +22,8 @@ OptionList driveOptions(Cli& cli) {
   list.add("rate", cli.rate, "", above(0), "frames a second");
   list.add("speed", cli.speed, "m/s", above(0), "of the robot");
   list.add("start", cli.start, "m", "where on the route to begin");
-  list.add("people", cli.people, "", between(0, 1000), "who walk to and fro across the route");
+  list.add("people", cli.people, "", between(0, 1000),
+           "people who walk to and fro across the route");
   list.add("odometry", cli.odometry, "",
            "write movements and sensory frames instead of observations with true poses");
   list.add("odometry_noise", cli.odometryNoise, "", between(0, 1),
@@ -41,10 +42,10 @@ OptionList sensorOptions(Cli& cli) {
   cli.lidar.describe(list);
   for (const char* option : {"lowest", "highest", "max_range"}) list.remove(option);
   list.add("lidar_range", cli.lidar.maxRange, "m", above(synthetic_world::LidarOptions::kMinRange),
-           "of the LiDAR's returns");
+           "range of the LiDAR");
   list.add("turn_time", cli.turnTime, "s", between(0, 10),
-           "that a turn of the LiDAR takes: points are seen from where it is by then, and have "
-           "times");
+           "time of a turn of the LiDAR: each point has its own time, and is seen from where the "
+           "robot is then; 0: all at once");
   list.add("ghosts", cli.lidar.ghosts, "", between(0, 1),
            "share of the LiDAR's beams on windows, cars, water and signs that return by way of "
            "what these mirror");
@@ -68,13 +69,13 @@ void addOptions(CLI::App& app, Cli& cli) {
       ->capture_default_str();
   label_noise::addLabelNoiseKind(app, cli.labelNoiseKind);
   app.add_option("--classes", cli.classes,
-                 "Class table (YAML) for the labels; its raw ids name the world's classes. "
+                 "Class table (YAML) for the labels, with the world's classes as raw ids. "
                  "Without: the world's own table");
   app.add_option("--truth-query", cli.truthQuery,
                  "Print what is at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
   addNumber(app, "--tolerance", cli.tolerance, strict_files::atLeast(0),
-            "What is this near to a surface is on it, m");
+            "A point as near to a surface as this lies on it, m");
   ::addOptions(app, driveOptions(cli), "World and drive");
   ::addOptions(app, sensorOptions(cli), "Sensors");
 }

@@ -287,7 +287,7 @@ using strict_files::above;
 using strict_files::atLeast;
 
 void MapFolderOptions::describe(strict_files::OptionList& list) {
-  list.add("memory", memory, "MB", atLeast(0), "for tiles; a scan takes what it needs beyond");
+  list.add("memory", memory, "MB", atLeast(0), "memory for tiles; a scan may need more");
   list.add("tile_size", tileSize, "m", above(0),
            "edge of a new folder's tiles, rounded down to 8, 16, 32 ... voxels");
 }

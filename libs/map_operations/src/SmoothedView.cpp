@@ -73,8 +73,8 @@ double add(const SemanticOcTree::Belief& belief, double weight, double most,
 void SmoothingOptions::describe(strict_files::OptionList& list) {
   list.add(
       "neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
-      "what a voxel across a face tells about a voxel's class, beside 1 for itself, up to odds "
-      "of 25; 0: nothing. 1 sees through 30 % of wrong labels, less keeps smaller things");
+      "weight of each neighbor across a face in a voxel's class, which itself has 1; a neighbor "
+      "tells odds of 25 at most. 1 sees through 30 % of wrong labels, less keeps smaller things");
 }
 
 void SmoothingOptions::validate() const { strict_files::checkOptions(*this, "SmoothingOptions"); }

@@ -193,7 +193,10 @@ A map has any number of readers, and none sees less because of another.)")
 Returns (everything, corners): corners is M x 3 float64, the lowest corner of each tile in
 meters, map frame. everything is True at first, and after clear(): these are all tiles that are
 known in part, and what was known before does not count.)")
-      .def_property_readonly("tile_size", &Follower::tileSize, "Edge of a tile, meters.");
+      .def_property_readonly("tile_size", &Follower::tileSize, "Edge of a tile, meters.")
+      .def("__repr__", [](const Follower& follower) {
+        return "<Follower: tiles of " + strict_files::textOf(follower.tileSize()) + " m>";
+      });
   addChanging(map);
   addFiles(map);
 }

@@ -36,6 +36,11 @@ colored_graph::GraphClass groundNamed(const py::handle& name, const ClassTable& 
   refuseClass("order", text, classes);
 }
 
+std::string nameOfGround(std::size_t id, const ClassTable& classes) {
+  return id == 0 ? semantic_planning::kUnknownGround
+                 : classes.name(static_cast<semantic_types::ClassId>(id));
+}
+
 ClassOrder orderOf(const py::object& argument, const std::optional<std::vector<double>>& rates,
                    const ClassTable& classes) {
   if (isPath(argument)) {
@@ -89,9 +94,7 @@ struct Plan {
   std::map<std::string, double> lengthPerClass() const {
     std::map<std::string, double> lengths;
     for (std::size_t id = 0; id < result.lengthPerClass.size(); ++id)
-      lengths[id == 0 ? semantic_planning::kUnknownGround
-                      : classes.name(static_cast<semantic_types::ClassId>(id))] =
-          result.lengthPerClass[id];
+      lengths[nameOfGround(id, classes)] = result.lengthPerClass[id];
     return lengths;
   }
   std::string text() const {
@@ -133,6 +136,18 @@ class Planner {
               return m_planner.replan(from, startZ);
             }),
             m_map->classes()};
+  }
+  std::string text() const {
+    const ClassOrder& order = m_planner.order();
+    std::string text = "<Planner: ";
+    for (int rank = 0; rank < order.ranks(); ++rank) {
+      const char* before = rank == 0 ? "" : " before ";
+      for (int id = 0; id < order.classes(); ++id)
+        if (order.rank(static_cast<colored_graph::GraphClass>(id)) == rank)
+          text += std::exchange(before, ", ") +
+                  nameOfGround(static_cast<std::size_t>(id), m_map->classes());
+    }
+    return text + ">";
   }
 
  private:
@@ -203,7 +218,8 @@ several levels is meant; None: the lowest.)")
 
 start: x, y, heading, where the vehicle is. What it has of a path is kept if it is free and no
 other one costs 0.5 m less.
-Raises RuntimeError: nothing was planned before.)");
+Raises RuntimeError: nothing was planned before.)")
+      .def("__repr__", &Planner::text);
   map.def("planner", &plannerOf, py::arg("order"), none("vehicle"), py::kw_only(), none("rates"),
           R"(Plans paths that put classes before length.
 

@@ -22,7 +22,7 @@ void DriveOptions::describe(OptionList& list) {
            "highest speed there; inf: no limit");
   list.add("max_sensor_age", maxSensorAge, "s", above(0),
            "older observations make the vehicle slow down, and stop when three times as old");
-  list.add("reaction_time", reactionTime, "s", atLeast(0), "until a command has an effect");
+  list.add("reaction_time", reactionTime, "s", atLeast(0), "time until a command has an effect");
 }
 
 void DriveOptions::validate() const { strict_files::checkOptions(*this, "DriveOptions"); }

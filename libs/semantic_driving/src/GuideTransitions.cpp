@@ -208,12 +208,15 @@ Transition transition(GuideState state, const Answer& answer) {
 }
 
 void GuideOptions::describe(strict_files::OptionList& list) {
-  list.add("patience", patience, "s", strict_files::atLeast(0),
-           "for what stands in the way to go away, or to be passed; five times as long for what "
-           "stands in the goal's place");
+  list.add(
+      "patience", patience, "s", strict_files::atLeast(0),
+      "wait for what stands in the way to go away, or to be passed; five times as long for what "
+      "stands in the goal's place");
   list.add("drive_to_nearest", driveToNearest, "",
-           "drives to the nearest pose that fits then, within 5 m; or stops, and says which it is");
-  list.add("at_goal", atGoal, "m", strict_files::above(0), "so near to the goal's place is there");
+           "where the goal does not fit, drive to the nearest pose that does, within 5 m; off: "
+           "stop, and say which it is");
+  list.add("at_goal", atGoal, "m", strict_files::above(0),
+           "distance from the goal that counts as arrived");
 }
 
 bool GuideOptions::isAsGood(const mrpt::math::TPose2D& pose,

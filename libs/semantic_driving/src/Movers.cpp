@@ -43,7 +43,7 @@ std::vector<bool> classesIn(const std::string& names, const semantic_types::Clas
 }  // namespace
 
 void MoverOptions::describe(strict_files::OptionList& list) {
-  list.add("classes", classes, "", "of those who move, with commas between; empty: none");
+  list.add("classes", classes, "", "classes that move, with commas between; empty: none");
 }
 
 void MoverOptions::validate() const { strict_files::checkOptions(*this, "MoverOptions"); }

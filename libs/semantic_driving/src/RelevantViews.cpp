@@ -325,7 +325,7 @@ std::unique_ptr<ViewStrategy> relevantViews(const SemanticPlanner& planner,
 
 void ExploreOptions::describe(strict_files::OptionList& list) {
   list.add("budget", budget, "m", strict_files::above(0).orInfinite(),
-           "that it drives at most, looking around; inf: no limit");
+           "way that it drives at most while it looks around; inf: no limit");
 }
 
 void ExploreOptions::validate() const { strict_files::checkOptions(*this, "ExploreOptions"); }

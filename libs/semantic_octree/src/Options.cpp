@@ -25,17 +25,17 @@ const Choices<InsertionOptions::Rays>& choicesOf(InsertionOptions::Rays) {
 }
 
 void InsertionOptions::describe(OptionList& list) {
-  list.add(
-      "rays", rays, "",
-      "which rays carve free space; end_voxels: one for each voxel that was hit, faster, nearly "
-      "the same map");
+  list.add("rays", rays, "",
+           "rays that carve free space: all, or one for each voxel that was hit, which is faster "
+           "and gives nearly "
+           "the same map");
   list.add("max_range", maxRange, "m", atLeast(0),
            "returns beyond it only carve free space; 0: no limit. Where the sensor or its labels "
            "become bad: 30 for LiDARs, 5 for depth cameras");
   list.add("min_range", minRange, "m", between(0, 1000),
            "nearer returns are ignored: the robot itself");
   list.add("threads", threads, "", between(1, 256),
-           "that share the work on a scan; the map does not depend on it");
+           "threads that share the work on a scan; the map does not depend on it");
 }
 
 void InsertionOptions::validate() const {
@@ -56,16 +56,17 @@ void FilterParameters::describe(OptionList& list) {
       "labels disagree within voxels more than that allows. Too large, and a few wrong labels win; "
       "too small, and it takes many scans to be sure");
   list.add("label_correlation", labelCorrelation, "", between(0, 1),
-           "of a scan's labels in one voxel, at most; less for scans whose labels disagree there. "
+           "correlation of a scan's labels in one voxel, at most; less for scans whose labels "
+           "disagree there. "
            "0: each counts by itself; 1: many that agree say no more than one");
-  list.add(
-      "hit_probability", hitProbability, "", above(0).upTo(1 - kLeastProbability),
-      "of a return from an occupied voxel that a beam reaches: 0.5 for LiDARs outdoors, 0.9 for "
-      "depth cameras");
-  list.add(
-      "false_alarm_probability", falseAlarmProbability, "", probability,
-      "of a return from a free voxel, below hit_probability. Larger: moving objects leave less "
-      "behind; smaller: thin things survive");
+  list.add("hit_probability", hitProbability, "", above(0).upTo(1 - kLeastProbability),
+           "probability of a return from an occupied voxel that a beam reaches: 0.5 for LiDARs "
+           "outdoors, 0.9 for "
+           "depth cameras");
+  list.add("false_alarm_probability", falseAlarmProbability, "", probability,
+           "probability of a return from a free voxel, below hit_probability. Larger: moving "
+           "objects leave less "
+           "behind; smaller: thin things survive");
 }
 
 void FilterParameters::validate(int numClasses) const {

@@ -200,7 +200,7 @@ void GroundOptions::describe(strict_files::OptionList& list) {
   list.add("fill_gap", fillGap, "m", gap,
            "widest hole in the ground that is filled, with the class of its border");
   list.add("keep_off", keepOff, "",
-           "no part of the footprint over forbidden classes; otherwise no wheel");
+           "keep the whole footprint off forbidden classes; otherwise only the wheels");
 }
 
 void GroundOptions::validate() const { strict_files::checkOptions(*this, "GroundOptions"); }

@@ -15,8 +15,8 @@ void PlannerOptions::describe(strict_files::OptionList& list) {
       "reading", reading.kind, "",
       "class of a voxel: the likeliest, each by its probability, or the worst that is probable");
   list.add("shorten", shorten, "",
-           "look for the path of least price; otherwise for the best one in the graph");
-  list.add("strict", strict, "", "as if all rates of the order were inf: classes before length");
+           "look for the path of least price; off: take the graph's best path");
+  list.add("strict", strict, "", "classes before length, as if all rates of the order were inf");
   ground.describe(list);
 }
 

@@ -259,7 +259,7 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
   list.add("graph", kind, "",
            "vertices of the graph: cells of the compressed tree, leaves of the map, N draws of a "
            "Halton sequence, draws until N are on drivable ground, or a grid of the ground");
-  list.add("vertices", vertices, "", "N of them; 0: all that the map has");
+  list.add("vertices", vertices, "", "number of vertices (N); 0: all that the map has");
   list.add("buffer", buffer, "m", buffers,
            "distance of vertices from the line from start to goal, at most");
 }
