@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <semantic_driving/DriveGuide.h>
 #include <semantic_driving/Explorer.h>
 
 #include <algorithm>
@@ -208,6 +209,43 @@ TEST_F(Frontiers, FarFromAGoalThatIsReachedAreOfNoUseToWhoWasThere) {
   EXPECT_FALSE(explorer.places(near, 0, {30, 0, 0}).frontiers.empty())
       << "known ground ends before";
   EXPECT_FALSE(explorer.exhausted());
+}
+
+TEST_F(Frontiers, AreChosenAlikeInSlicesOfAnySize) {
+  SemanticPlanner planner = plannerOver(world);
+  const TPose2D goal(30, 4, 0);
+  const auto asPlanned = [](DrivePath path) { return path; };
+  const auto choose = [&](std::size_t slice) {
+    Explorer explorer(planner);
+    explorer.begin(kStart, 0, goal);
+    int slices = 1;
+    for (std::size_t work = slice; !explorer.goOn(asPlanned, work); work = slice) ++slices;
+    return std::make_pair(slices, explorer.chosen(true));
+  };
+  const auto [one, whole] = choose(std::numeric_limits<std::size_t>::max());
+  const auto [many, sliced] = choose(1000);
+  ASSERT_TRUE(whole && sliced);
+  EXPECT_EQ(one, 1);
+  EXPECT_GT(many, 5) << "it reaches some 5000 columns";
+  EXPECT_EQ(sliced->plan.price, whole->plan.price);
+  EXPECT_EQ(distance(poseOf(sliced->path.at(1e9)), poseOf(whole->path.at(1e9))), 0);
+}
+
+TEST_F(Frontiers, AreNotLookedForOnceAGuideIsToldToStop) {
+  world.floor(-50, 50, -50, 50, PaintedWorld::Road);
+  SemanticPlanner planner = plannerOver(world);
+  DriveGuide guide({}, planner, {90, 0, 0});
+  ReactiveNavigator::Options reactive;
+  reactive.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
+  DriveController drive({}, reactive);
+  const DriveState state{kStart};
+  guide.update(state, 0, drive, 0);
+  ASSERT_TRUE(guide.isSearching());
+  EXPECT_TRUE(drive.tracker().path().empty());
+  guide.stopSearching();
+  EXPECT_FALSE(guide.isSearching());
+  for (int i = 1; i < 50 && drive.tracker().path().empty(); ++i) guide.update(state, 0, drive, i);
+  EXPECT_EQ(guide.target(), Target::Frontier) << "it looks anew";
 }
 
 TEST_F(Frontiers, BehindAWallAreNone) {

@@ -91,6 +91,13 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
     m_reason += "; frontiers explored: " + std::to_string(explored());
 }
 
+void DriveGuide::stopSearching() {
+  m_open.reset();
+  m_explorer.giveUp();
+  m_planner.forget();
+  m_planned = false;
+}
+
 /** Where it fits nothing is looked for, nor where it stands or is about to. */
 std::optional<GoalMisfit> DriveGuide::misfit(const Situation& now) const {
   const double far = distance(now.state.pose, m_aim);
@@ -265,27 +272,22 @@ bool DriveGuide::toGoal(From from, const Situation& now) {
 bool DriveGuide::toFrontier(const SeekFrontier& question, const Situation& now) {
   if (!m_open) {
     m_open = Open{departureOf(now, question.from)};
-    explore();
+    m_explorer.begin(m_open->from.pose, m_open->from.z, m_aim);
   }
   const auto joinedTo = [&](DrivePath path) { return joined(m_open->from, now, std::move(path)); };
   if (!mayWait(now)) m_work = kAllWork;
-  if (!m_explorer.goOn(joinedTo, m_work)) return false;
+  const bool isChosen = m_explorer.goOn(joinedTo, m_work);
+  const Exploration& places = m_explorer.found();
+  m_planned = m_planned && places.frontiers.empty();
+  if (!isChosen) return false;
+  m_open->enclosed = places.enclosed;
+  if (places.enclosed) m_reason = reasonOf(places);
   auto way = m_explorer.chosen(question.last);
   m_found.reset();
   if (!way) return true;
   m_plan = std::move(way->plan);
   m_found = std::move(way->path);
   return true;
-}
-
-void DriveGuide::explore() {
-  const Departure& from = m_open->from;
-  Exploration places = m_explorer.places(from.pose, from.z, m_aim);
-  m_open->enclosed = places.enclosed;
-  if (places.enclosed) m_reason = reasonOf(places);
-  m_planned = m_planned && places.frontiers.empty();
-  m_work -= std::min(m_work, places.work);
-  m_explorer.beginToChoose(std::move(places.frontiers), from.pose, from.z);
 }
 
 /** Where it stands, or on a path that it may follow meanwhile. */

@@ -1,5 +1,7 @@
 #include <semantic_driving/Explorer.h>
 
+#include <semantic_planning/planner/Slices.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,6 +19,7 @@ using semantic_planning::Ground;
 using semantic_planning::PlanResult;
 using semantic_planning::PlanStatus;
 using semantic_planning::SemanticPlanner;
+using semantic_planning::Slices;
 using semantic_planning::Surface;
 
 namespace {
@@ -27,52 +30,46 @@ namespace {
  * Koenig and Likhachev, "D* Lite", 2002.) */
 class WayLeft {
  public:
-  WayLeft(const semantic_planning::Ground& ground, const GroundFlood& flood,
-          const GoalRegion& region, const mrpt::math::TPose2D& goal, double unknownFactor);
+  /** \param asked for each column of the rectangle, whether from() may be asked there */
+  WayLeft(const Ground& ground, const GroundFlood& flood, const GoalRegion& region,
+          const TPose2D& goal, double unknownFactor, const std::vector<bool>& asked);
 
-  /** How far the unknown may be from where it is seen, meters. */
-  static constexpr double kSight = 1.4;
-
-  /** Weighted meters; infinite where something is in the way.
-   * \param c in the rectangle, within kSight of what is reached */
-  double from(semantic_planning::Column c) const { return m_ways[m_columns.indexOf(c)]; }
+  /** Weighted meters; infinite where something is in the way. */
+  double from(Column c) const { return m_ways[m_columns.indexOf(c)]; }
 
  private:
   using Open = std::pair<double, std::size_t>;
 
-  void start(const mrpt::math::TPose2D& goal);
-  void search();
-  std::size_t reachedIn(const std::vector<Open>& bucket) const;
+  void start(const TPose2D& goal);
+  void search(const std::vector<bool>& asked);
   void expand(const Open& open);
-  void offer(semantic_planning::Column c, double way);
-  void startOutside(const mrpt::math::TPose2D& goal);
-  double costOf(semantic_planning::Column c) const;
+  void offer(Column c, double way);
+  void startOutside(const TPose2D& goal);
+  double costOf(Column c) const;
 
-  const semantic_planning::Ground& m_ground;
+  const Ground& m_ground;
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
   const ColumnRectangle& m_columns;
   double m_unknown;    ///< what a meter through it counts
   double m_width;      ///< of a bucket, weighted meters
   double m_first = 0;  ///< no way is shorter, weighted meters
-  double m_beyond;     ///< the farthest that is reached ways are asked for, weighted meters
   std::vector<double> m_ways;
   /** By how often the width fits into what a way is longer than the first. */
   std::vector<std::vector<Open>> m_open;
 };
 
-WayLeft::WayLeft(const semantic_planning::Ground& ground, const GroundFlood& flood,
-                 const GoalRegion& region, const TPose2D& goal, double unknownFactor)
+WayLeft::WayLeft(const Ground& ground, const GroundFlood& flood, const GoalRegion& region,
+                 const TPose2D& goal, double unknownFactor, const std::vector<bool>& asked)
     : m_ground(ground),
       m_flood(flood),
       m_region(region),
       m_columns(flood.columns()),
       m_unknown(unknownFactor),
       m_width(std::max(1.0, m_unknown) * m_ground.voxelSize()),
-      m_beyond(std::hypot(1, 1) * kSight * m_unknown),
       m_ways(m_columns.size(), std::numeric_limits<double>::infinity()) {
   start(goal);
-  search();
+  search(asked);
 }
 
 void WayLeft::start(const TPose2D& goal) {
@@ -120,22 +117,16 @@ double WayLeft::costOf(Column c) const {
 }
 
 /** What is offered meanwhile comes into the same bucket or a later one. Ends where all that is
- * reached has its way. */
-void WayLeft::search() {
-  std::size_t left = m_region.numReached();
-  std::size_t end = std::numeric_limits<std::size_t>::max();
-  for (std::size_t b = 0; b < std::min(end, m_open.size()); ++b) {
+ * asked for has its way. */
+void WayLeft::search(const std::vector<bool>& asked) {
+  auto left = std::count(asked.begin(), asked.end(), true);
+  for (std::size_t b = 0; left > 0 && b < m_open.size(); ++b) {
     for (std::size_t k = 0; k < m_open[b].size(); ++k) expand(Open(m_open[b][k]));
-    if (left == 0) continue;
-    left -= reachedIn(m_open[b]);
-    if (left == 0) end = b + 2 + static_cast<std::size_t>(m_beyond / m_width);
+    Slices::count(m_open[b].size() / 4);
+    left -= std::count_if(m_open[b].begin(), m_open[b].end(), [&](const Open& open) {
+      return asked[open.second] && open.first == m_ways[open.second];
+    });
   }
-}
-
-std::size_t WayLeft::reachedIn(const std::vector<Open>& bucket) const {
-  return std::count_if(bucket.begin(), bucket.end(), [this](const Open& open) {
-    return open.first == m_ways[open.second] && m_region.isReached(m_columns.columnOf(open.second));
-  });
 }
 
 void WayLeft::expand(const Open& open) {
@@ -175,17 +166,18 @@ Exploration Explorer::places(const TPose2D& from, double z, const TPose2D& goal)
   return found;
 }
 
-void Explorer::beginToChoose(std::vector<Frontier> places, const TPose2D& from, double z) {
+void Explorer::begin(const TPose2D& from, double z, const TPose2D& goal) {
   m_choice = {};
-  m_choice.places = std::move(places);
   m_choice.from = from;
   m_choice.z = z;
+  m_choice.search = std::make_unique<Slices>([=] { m_choice.exploration = places(from, z, goal); });
 }
 
 bool Explorer::goOn(const std::function<DrivePath(DrivePath)>& joined, std::size_t& work) {
   Choice& c = m_choice;
-  for (; c.next < c.places.size(); ++c.next) {
-    const Frontier& f = c.places[c.next];
+  if (!c.search->goOn(work)) return false;
+  for (; c.next < c.exploration.frontiers.size(); ++c.next) {
+    const Frontier& f = c.exploration.frontiers[c.next];
     if (c.best && f.cost >= c.best->cost) break;
     if (!std::exchange(c.isPlanning, true)) m_planner.begin(c.from, f.pose, c.z, f.z);
     std::optional<PlanResult> plan = m_planner.goOn(work);
@@ -232,6 +224,7 @@ namespace {
 constexpr double kUnknownFactor = 2;   // what a meter through the unknown counts, of one on rank 0
 constexpr double kFrontiersApart = 3;  // m
 constexpr std::size_t kMostFrontiers = 6;
+constexpr double kSight = 1.4;  // m, from a place to the unknown next to known ground
 
 class FrontierSearch {
  public:
@@ -242,10 +235,18 @@ class FrontierSearch {
         m_flood(flood),
         m_region(region),
         m_from(from),
-        m_goal(goal) {
+        m_goal(goal),
+        m_answers(flood.columns().size()) {
     flood.forEach([&](Column c, const GroundFlood::Place& place) {
       if ((c.x + c.y) % 2 == 0) lookAround(c, place.z);
     });
+  }
+
+  /** For each column of the rectangle, whether it is the unknown that is seen. */
+  std::vector<bool> isSeen() const {
+    std::vector<bool> seen(m_flood.columns().size());
+    for (const View& view : m_views) seen[m_flood.columns().indexOf(view.unknown)] = true;
+    return seen;
   }
 
   /** The best ones that the vehicle can stand at, apart from each other and from those to avoid.
@@ -308,7 +309,14 @@ class FrontierSearch {
     return std::hypot(x - m_from.x, y - m_from.y) + std::hypot(x - m_goal.x, y - m_goal.y);
   }
 
-  bool isUnknown(Column c, int z) const {
+  /** Asked from many places around: the last answer is kept. */
+  bool isUnknown(Column c, int z) {
+    Answer& last = m_answers[m_flood.columns().indexOf(c)];
+    if (last.z != z) last = {z, findUnknown(c, z)};
+    return last.unknown;
+  }
+
+  bool findUnknown(Column c, int z) const {
     if (!m_ground.surfaces(c).empty()) return false;
     for (int k = z - 1; k <= z; ++k)
       if (m_ground.map().search(octomap::OcTreeKey(static_cast<octomap::key_type>(c.x),
@@ -320,7 +328,8 @@ class FrontierSearch {
 
   /** For the unknown of the goal's region, in each of eight directions. */
   void lookAround(Column c, int z) {
-    const int far = static_cast<int>(std::lround(WayLeft::kSight / m_ground.voxelSize()));
+    Slices::count(1);
+    const int far = static_cast<int>(std::lround(kSight / m_ground.voxelSize()));
     for (const Column& d : kNeighbors)
       for (int i = 1; i <= far; ++i) {
         const Column there{c.x + i * d.x, c.y + i * d.y};
@@ -349,6 +358,11 @@ class FrontierSearch {
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
   const TPose2D m_from, m_goal;
+  struct Answer {
+    int z = -1;
+    bool unknown = false;
+  };
+  std::vector<Answer> m_answers;  ///< of isUnknown(), by column
   std::vector<View> m_views;
 };
 
@@ -365,16 +379,14 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
   const int key = planner.ground().keyOf(z);
   const GroundFlood flood(planner, from, key, kFrontierRadius);
   const GoalRegion region(planner, flood.columns(), flood.reached(), from, z, goal);
-  constexpr std::size_t kColumnsOfWork = 4;
   Exploration found;
-  found.work = flood.columns().size() / kColumnsOfWork;
   found.enclosed = region.isEnclosed();
   found.goalReached = region.isGoalReached();
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
   if (found.enclosed) return found;
   const FrontierSearch places(planner, flood, region, from, goal);
   const auto search = [&](double unknown) {
-    const WayLeft wayLeft(planner.ground(), flood, region, goal, unknown);
+    const WayLeft wayLeft(planner.ground(), flood, region, goal, unknown, places.isSeen());
     return places.chosen(wayLeft, unknown, avoid);
   };
   found.frontiers = search(kUnknownFactor);

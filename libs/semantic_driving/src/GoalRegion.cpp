@@ -1,5 +1,7 @@
 #include "GoalRegion.h"
 
+#include <semantic_planning/planner/Slices.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,6 +14,7 @@ using mrpt::math::TPose2D;
 using semantic_planning::Column;
 using semantic_planning::Ground;
 using semantic_planning::SemanticPlanner;
+using semantic_planning::Slices;
 using semantic_planning::VehicleOptions;
 
 namespace {
@@ -32,8 +35,7 @@ GoalRegion::GoalRegion(const SemanticPlanner& planner, const ColumnRectangle& co
                        const TPose2D& goal)
     : m_columns(columns), m_marks(reached.begin(), reached.end()) {
   static_assert(kReached == 1, "as true is");
-  m_reached = static_cast<std::size_t>(std::count(reached.begin(), reached.end(), true));
-  m_enclosed = m_reached > 0;
+  m_enclosed = std::count(reached.begin(), reached.end(), true) > 0;
   markObstacles(planner, from, z);
   start(planner.ground(), goal);
   flood();
@@ -47,10 +49,13 @@ void GoalRegion::markObstacles(const SemanticPlanner& planner, const TPose2D& fr
   const ObstacleOptions options;
   const ObstacleFinder finder(planner, options);
   const Surroundings heights(ground, m_columns, ground.columnAt(from.x, from.y), ground.keyOf(z));
+  Slices::count(m_columns.size() / 10);
   heights.forEach([&](Column c, int height, const semantic_planning::Surface* surface) {
-    if (!finder.isObstacle(c, height, surface)) return;
-    m_marks[m_columns.indexOf(c)] |= kObstacle;
-    keepAround(c, radius);
+    if (finder.isObstacle(c, height, surface)) {
+      m_marks[m_columns.indexOf(c)] |= kObstacle;
+      keepAround(c, radius);
+    }
+    if (c.x == m_columns.low().x) Slices::count(static_cast<std::size_t>(m_columns.width() / 4));
   });
 }
 

@@ -35,7 +35,6 @@ class GoalRegion {
   bool contains(semantic_planning::Column c) const { return m_goalReached || is(kRegion, c); }
   /** The vehicle can get there. \param c in the rectangle */
   bool isReached(semantic_planning::Column c) const { return is(kReached, c); }
-  std::size_t numReached() const { return m_reached; }
   /** Something is in the way. \param c in the rectangle */
   bool isObstacle(semantic_planning::Column c) const { return is(kObstacle, c); }
   /** So near to an obstacle that the vehicle cannot be there. \param c in the rectangle */
@@ -65,7 +64,7 @@ class GoalRegion {
   const ColumnRectangle m_columns;
   std::vector<std::uint8_t> m_marks;
   std::vector<semantic_planning::Column> m_open;
-  std::size_t m_reached = 0, m_size = 0;  ///< columns
+  std::size_t m_size = 0;  ///< columns
   bool m_goalReached = false, m_enclosed = false, m_rim = false;
 };
 

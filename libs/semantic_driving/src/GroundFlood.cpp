@@ -1,5 +1,7 @@
 #include "GroundFlood.h"
 
+#include <semantic_planning/planner/Slices.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +11,7 @@ using semantic_planning::Column;
 using semantic_planning::Disc;
 using semantic_planning::Ground;
 using semantic_planning::SemanticPlanner;
+using semantic_planning::Slices;
 using semantic_planning::Surface;
 
 ColumnRectangle knownAround(const Ground& ground, Column center, double radius) {
@@ -84,6 +87,7 @@ void GroundFlood::flood(int z) {
     m_open.pop();
     if (m_places[i].done) continue;
     m_places[i].done = true;
+    Slices::count(1);
     expand(m_columns.columnOf(i), m_places[i]);
   }
 }
@@ -102,12 +106,12 @@ void GroundFlood::expand(Column c, const Place& place) {
   constexpr double kLenient = 1.5;  // m around where the vehicle stands there may be less clearance
   for (const Column& d : kNeighbors) {
     const Column next{c.x + d.x, c.y + d.y};
-    if (!m_columns.contains(next) || at(next).done) continue;
+    const double way = lengthOf(d) * m_ground.voxelSize();
+    if (!m_columns.contains(next) || place.cost + way >= at(next).cost) continue;
     const Surface* s = m_ground.near(next, place.z, m_ground.step());
     if (!s || !s->drivable) continue;
     const colored_graph::Rank rank = m_planner.order().rank(s->classId);
     if (rank == colored_graph::kForbidden) continue;
-    const double way = lengthOf(d) * m_ground.voxelSize();
     const double cost = place.cost + way * (rank + 1) + turningOf(next, d);
     if (cost < at(next).cost && (fits(next, *s, d) || isNear(next, kLenient)))
       offer({cost, c, rank, s->z, false}, next);

@@ -78,7 +78,7 @@ class Surroundings {
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   struct Step {
     semantic_planning::Column column;
-    int z;
+    int z;  ///< of the ground there, or that leads there
   };
 
   Surroundings(const semantic_planning::Ground& ground, semantic_planning::Column center, int z,
@@ -93,19 +93,20 @@ class Surroundings {
 
   /** Over ground first, so that a detour over it counts for more than a jump over a gap. */
   void spread(int z) {
-    std::vector<Step> overGround{{m_center, z}}, overGaps;
+    const semantic_planning::Surface* below = m_ground.near(m_center, z, m_ground.step());
+    std::vector<Step> overGround{{m_center, below ? below->z : z}}, overGaps;
     for (std::size_t gap = 0; !overGround.empty() || gap < overGaps.size();) {
       const bool isGap = overGround.empty();
       const Step step = isGap ? overGaps[gap++] : overGround.back();
       if (!isGap) overGround.pop_back();
       int& height = m_heights[m_columns.indexOf(step.column)];
       if (height != kNotReached) continue;
-      const semantic_planning::Surface* here = m_ground.near(step.column, step.z, m_ground.step());
-      height = here ? here->z : step.z;
+      height = step.z;
       for (const semantic_planning::Column& d : kNeighbors) {
         const semantic_planning::Column c{step.column.x + d.x, step.column.y + d.y};
         if (!contains(c) || m_heights[m_columns.indexOf(c)] != kNotReached) continue;
-        (m_ground.near(c, height, m_ground.step()) ? overGround : overGaps).push_back({c, height});
+        const semantic_planning::Surface* s = m_ground.near(c, step.z, m_ground.step());
+        (s ? overGround : overGaps).push_back({c, s ? s->z : step.z});
       }
     }
   }

@@ -361,6 +361,8 @@ void Navigator::chooseView() {
 void Navigator::conclude(const std::string& why) {
   m_conclusion = why + m_views->conclusion();
   m_controller.setPath({});
+  if (m_guide) m_guide->stopSearching();
+  m_guidesNext = false;
 }
 
 void Navigator::endExploring() {

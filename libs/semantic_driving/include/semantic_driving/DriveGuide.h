@@ -47,6 +47,8 @@ class DriveGuide {
   /** Whether it looks for a path, and should be asked again soon: searches are spread over calls, a
    * few hundredths of a second each. Meanwhile it goes on as before. */
   bool isSearching() const { return m_open.has_value(); }
+  /** Gives up what it looks for; the next update() looks anew. */
+  void stopSearching();
   Target target() const { return m_state.target(); }
   /** Where it drives in the end: the goal, or in its place the nearest pose that fits. */
   const mrpt::math::TPose2D& goal() const { return m_aim; }
@@ -105,7 +107,6 @@ class DriveGuide {
   bool isBetter(const Situation& now) const;
   bool toGoal(From from, const Situation& now);
   bool toFrontier(const SeekFrontier& question, const Situation& now);
-  void explore();
   bool mayWait(const Situation& now) const;
   std::optional<DrivePath> recovery(const Situation& now, bool blind);
   std::optional<DrivePath> back(const Situation& now) const;

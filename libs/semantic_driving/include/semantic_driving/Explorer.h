@@ -1,9 +1,11 @@
 #pragma once
 #include <semantic_driving/DrivePath.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
+#include <semantic_planning/planner/Slices.h>
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -45,7 +47,6 @@ struct Exploration {
   /** Known ground leads to the goal's place, though perhaps not for a vehicle that has to turn, or
    * is to stand there. */
   bool goalReached = false;
-  std::size_t work = 0;  ///< what finding that took, as SemanticPlanner::goOn() counts it
 };
 
 /** Places on drivable ground next to unknown space from which to see more of the way to a goal,
@@ -87,23 +88,20 @@ class Explorer {
     semantic_planning::PlanResult plan;
     DrivePath path;
   };
-  /** To the one of some places that costs least, if what its path costs beyond its length, as
-   * changes of gear and meters backwards do, counts, too. It is planned in slices. */
-  void beginToChoose(std::vector<Frontier> places, const mrpt::math::TPose2D& from, double z);
+  /** Looks for places() and chooses the one that costs least, if what its path costs beyond its
+   * length, as changes of gear and meters backwards do, counts, too; in slices, between which map
+   * and planner may be updated. What was begun before is given up. */
+  void begin(const mrpt::math::TPose2D& from, double z, const mrpt::math::TPose2D& goal);
   /** \param joined makes of a planned path what is driven
    * \param work as SemanticPlanner::goOn() has it \return whether the choice is made */
   bool goOn(const std::function<DrivePath(DrivePath)>& joined, std::size_t& work);
+  /** The places that were found since begin(), as soon as they are. */
+  const Exploration& found() const { return m_choice.exploration; }
   /** What was chosen, if any can be reached.
    * \param last places that are not reached are not tried again, even if none can be */
   std::optional<Way> chosen(bool last);
-  /** All of that in one go. */
-  std::optional<Way> choose(const Exploration& places, const mrpt::math::TPose2D& from, double z,
-                            const std::function<DrivePath(DrivePath)>& joined, bool last) {
-    std::size_t work = std::numeric_limits<std::size_t>::max();
-    beginToChoose(places.frontiers, from, z);
-    goOn(joined, work);
-    return chosen(last);
-  }
+  /** Gives up what was begun. */
+  void giveUp() { m_choice = {}; }
   /** The way that was chosen last is driven, or not: then its place may be chosen again. */
   void end(bool drives);
 
@@ -117,10 +115,11 @@ class Explorer {
   using Poses = std::vector<mrpt::math::TPose2D>;
   /** One that is being made. */
   struct Choice {
-    std::vector<Frontier> places;
     mrpt::math::TPose2D from;
     double z = 0;
-    std::size_t next = 0;  ///< of the places
+    Exploration exploration;
+    std::unique_ptr<semantic_planning::Slices> search;  ///< for it
+    std::size_t next = 0;                               ///< of its frontiers
     bool isPlanning = false;
     std::optional<Frontier> best;
     std::optional<Way> way;  ///< to the best one

@@ -123,6 +123,19 @@ SurfaceTile withAssumed(const SurfaceTile& measured, const SurfaceTile& assumed,
   return all;
 }
 
+/** Whether a column has something occupied between two heights below a node, which begins at z. */
+bool isAnyOccupied(const semantic_octree::SemanticOcTree::Node& node, int size, int z, Column c,
+                   int low, int high) {
+  if (z > high || z + size <= low) return false;
+  if (node.getLogOdds() <= 0) return false;  // an inner node's is its most occupied leaf's
+  if (node.isLeaf()) return true;
+  const int half = size / 2, inColumn = (c.x & half ? 1 : 0) + (c.y & half ? 2 : 0);
+  for (const int upper : {0, 1})
+    if (const auto child = node.child(inColumn + 4 * upper))
+      if (isAnyOccupied(child, half, z + upper * half, c, low, high)) return true;
+  return false;
+}
+
 /** Lets surfaces that stay keep what later stages found out about them. */
 void keepMarks(const SurfaceTile& before, SurfaceTile& tile) {
   for (int column = 0; column < kTileColumns; ++column) {
@@ -206,11 +219,8 @@ bool GroundTiles::isOccupied(Column c, int low, int high) const {
                        [&](const Run& run) { return run.top >= low && run.bottom <= high; });
   }
   if (std::min(c.x, c.y) < 0 || std::max(c.x, c.y) >= semantic_octree::kNumKeys) return false;
-  for (int z = std::max(low, 0); z <= std::min(high, semantic_octree::kNumKeys - 1); ++z) {
-    const auto node = m_map.search(octomap::OcTreeKey(c.x, c.y, z));
-    if (node && node.getLogOdds() > 0) return true;
-  }
-  return false;
+  const auto root = m_map.root();
+  return root && isAnyOccupied(root, semantic_octree::kNumKeys, 0, c, low, high);
 }
 
 void GroundTiles::forgetStages() {

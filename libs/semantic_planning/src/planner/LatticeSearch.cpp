@@ -1,11 +1,11 @@
 #include "LatticeSearch.h"
 
+#include <semantic_planning/planner/Slices.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include "Slices.h"
 
 namespace semantic_planning {
 

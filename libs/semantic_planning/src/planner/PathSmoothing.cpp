@@ -1,5 +1,7 @@
 #include "PathSmoothing.h"
 
+#include <semantic_planning/planner/Slices.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +11,6 @@
 #include <tuple>
 
 #include "PathTracing.h"
-#include "Slices.h"
 #include "vehicle/TangentArc.h"
 
 namespace semantic_planning {

@@ -1,6 +1,7 @@
 #include "PlannerCore.h"
 
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_planning/planner/Slices.h>
 #include <strict_files/TextFile.h>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include "PathImprovement.h"
 #include "PathTracing.h"
 #include "Refusal.h"
-#include "Slices.h"
 #include "ground/ColumnGrid.h"
 
 namespace semantic_planning {

@@ -1,12 +1,13 @@
 #include "PoseSearch.h"
 
+#include <semantic_planning/planner/Slices.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <tuple>
 
 #include "PathTracing.h"
-#include "Slices.h"
 
 namespace semantic_planning {
 

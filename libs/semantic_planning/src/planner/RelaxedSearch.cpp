@@ -1,5 +1,7 @@
 #include "RelaxedSearch.h"
 
+#include <semantic_planning/planner/Slices.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +10,6 @@
 
 #include "ClassPrices.h"
 #include "RelaxedField.h"
-#include "Slices.h"
 
 namespace semantic_planning {
 

@@ -1,4 +1,4 @@
-#include "Slices.h"
+#include <semantic_planning/planner/Slices.h>
 
 #include <utility>
 
