@@ -322,7 +322,8 @@ TEST(CompressedClasses, areStatedAsOftenAsTheyAreRight) {
       map.insert(scan.cloud, scan.T_map_sensor);
       grown.insert(scan.cloud, scan.T_map_sensor);
     }
-    for (SemanticOcTree* m : {&map, &grown}) m->setCalibration(calibrator.fit(map));
+    const Calibration fit = calibrator.fit(map);
+    for (SemanticOcTree* m : {&map, &grown}) m->setCalibration(fit);
     setAbstraction(map, options);
     SemanticOcTree compressed = Abstraction(map).compressedMap();
     const SemanticOcTree step = Abstraction(grown).compressedMap();

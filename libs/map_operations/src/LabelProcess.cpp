@@ -6,8 +6,9 @@
 namespace semantic_octree {
 namespace {
 
-/** Triples of labels before any are seen, which repeat nothing. */
-constexpr double kTriplesBefore = 20;
+/** Triples of labels before any are seen, which repeat nothing. Right labels differ at borders
+ * alone: of a few dozen such triples, chance makes a share that says nothing. */
+constexpr double kTriplesBefore = 100;
 constexpr int kExpectations = 25;
 /** Where the search for the correlation begins, and how far it goes. */
 constexpr double kCorrelationBefore = 0.1, kMostCorrelation = 0.9, kFirstStride = 1,
@@ -36,7 +37,9 @@ double repeatedIn(const LabeledVoxels& voxels) {
 
 LabelProcess::LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy,
                            double labelsBefore)
-    : m_repeated(repeatedIn(voxels)), m_correlation(std::max(m_repeated, kCorrelationBefore)) {
+    : m_repeated(repeatedIn(voxels)) {
+  const double least = std::min(1 - (1 - m_repeated) * (1 - m_repeated), kMostCorrelation);
+  m_correlation = std::max(least, kCorrelationBefore);
   const auto K = static_cast<std::size_t>(numClasses);
   const double wrong = (1 - accuracy) / (numClasses - 1);
   Table before(K, std::vector<double>(K, labelsBefore * wrong));
@@ -47,7 +50,7 @@ LabelProcess::LabelProcess(const LabeledVoxels& voxels, int numClasses, double a
   for (int round = 0; round < kExpectations; ++round) {
     const double slope = step(voxels, before);
     m_correlation *= slope > 0 ? 1 + stride : 1 / (1 + stride);
-    m_correlation = std::clamp(m_correlation, m_repeated, kMostCorrelation);
+    m_correlation = std::clamp(m_correlation, least, kMostCorrelation);
     stride *= kNextStride;
   }
 }

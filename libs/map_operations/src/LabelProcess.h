@@ -16,9 +16,9 @@ using LabeledVoxels = std::map<std::string, double>;
  *   else drawn from the row of the voxel's class.
  *
  * With c = r = 0 that is Dawid and Skene, "Maximum Likelihood Estimation of Observer Error-Rates
- * Using the EM Algorithm", 1979. Of the urn only so much can be seen as labels of one voxel differ:
- * what all scans repeat is taken to be at least as much as what one repeats of the one before,
- * r >= c. */
+ * Using the EM Algorithm", 1979. Of the urn only so much can be seen as labels of one voxel differ.
+ * Who errs again in the next scan errs for longer, too: that a label is of the urn is taken to be
+ * at least as likely as that one of two scans repeats the one before, r >= 1 - (1 - c)^2. */
 class LabelProcess {
  public:
   /** \param numClasses K > 1
@@ -29,7 +29,7 @@ class LabelProcess {
   /** c, [0, 1): of three labels in succession, the first two of which differ, how much more often
    * the third is the second than the first. */
   double repeated() const { return m_repeated; }
-  /** r, [c, 1) */
+  /** r, [1 - (1 - c)^2, 1) */
   double correlation() const { return m_correlation; }
   /** K x K expected counts of labels that were drawn: row is the true class. */
   const std::vector<std::vector<double>>& counts() const { return m_counts; }
