@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "PlainMap.h"
+#include "RandomScans.h"
 
 using namespace semantic_octree;
 
@@ -128,23 +128,6 @@ TEST(LabelReliability, ofOneClassAndOfPublishedConstantsIsTheParameters) {
   const LabelReliability most{parameters.accuracy, parameters.labelCorrelation};
   EXPECT_TRUE(never.explain({}, 1) == most);
   EXPECT_FALSE(never.explain({}, 24) == most);
-}
-
-TEST(LabelReliability, ofNoisyScansIsThatOfTheTreeToTheLastBit) {
-  constexpr int K = 6;
-  InsertionOptions options;
-  PlainMap plain(0.1, K);
-  SemanticOcTree map(0.1, numberedClasses(K)), threaded = map;
-  for (const double wrong : {0.0, 0.2, 0.6}) {
-    const PosedCloud scan = noisyWall(wrong, K, 7);
-    options.threads = 1;
-    plain.insert(scan, options);
-    map.insert(scan.cloud, scan.T_map_sensor, options);
-    options.threads = 3;
-    threaded.insert(scan.cloud, scan.T_map_sensor, options);
-  }
-  expectSame(map, plain);
-  EXPECT_TRUE(map == threaded);
 }
 
 TEST(LabelReliability, isKeptWithScansThatMayMove) {

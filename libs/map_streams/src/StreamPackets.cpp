@@ -2,6 +2,7 @@
 
 #include <map_streams/MapStream.h>
 #include <semantic_octree/TreeFile.h>
+#include <semantic_octree/store/TreeFormat.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -89,12 +90,11 @@ class PartWindow {
 /** The checksum of what is written into it. */
 class Crc : public std::streambuf {
  public:
-  std::uint32_t value() const { return static_cast<std::uint32_t>(m_crc); }
+  std::uint32_t value() const { return m_crc; }
 
  protected:
   std::streamsize xsputn(const char* bytes, std::streamsize number) override {
-    m_crc = crc32_z(m_crc, reinterpret_cast<const unsigned char*>(bytes),
-                    static_cast<std::size_t>(number));
+    m_crc = extendCrc(m_crc, bytes, static_cast<std::size_t>(number));
     return number;
   }
   int_type overflow(int_type byte) override {
@@ -104,7 +104,7 @@ class Crc : public std::streambuf {
   }
 
  private:
-  unsigned long m_crc = 0;
+  std::uint32_t m_crc = 0;
 };
 
 /** Fills packets, one behind the other. */
@@ -296,48 +296,54 @@ PartCoder coderFor(const TreeParts& parts, int numClasses, int rootDepth) {
 
 namespace {
 
-/** CRC-32 of all that follows (4 bytes), "SO", version, type (1 byte), stream (4 bytes). */
-constexpr char kMark[] = {'S', 'O'};
+/** A datagram: CRC-32 of all that follows (4 bytes), "SO", version, type (1 byte), stream (4
+ * bytes), payload. */
+using DatagramMark = std::array<char, 2>;
+constexpr DatagramMark kMark{'S', 'O'};
 constexpr std::uint8_t kStreamVersion = 3;
 constexpr std::size_t kDatagramHeaderBytes = 12;
 
-std::uint32_t crcOf(const std::string& bytes, std::size_t from) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()) + from, bytes.size() - from));
+std::uint32_t crcOf(const std::string& bytes) {  // behind its place
+  return extendCrc(0, bytes.data() + sizeof(std::uint32_t), bytes.size() - sizeof(std::uint32_t));
+}
+
+/** \param bytes with room for the checksum, which is filled */
+std::string checked(std::string bytes) {
+  const std::uint32_t crc = crcOf(bytes);
+  std::memcpy(&bytes[0], &crc, sizeof(crc));
+  return bytes;
 }
 
 }  // namespace
 
 std::string Datagram::bytes() const {
-  std::string bytes(kDatagramHeaderBytes, '\0');
-  std::memcpy(&bytes[4], kMark, sizeof(kMark));
-  bytes[6] = static_cast<char>(kStreamVersion);
-  bytes[7] = static_cast<char>(type);
-  std::memcpy(&bytes[8], &stream, sizeof(stream));
-  bytes += payload;
-  const std::uint32_t crc = crcOf(bytes, sizeof(crc));
-  std::memcpy(&bytes[0], &crc, sizeof(crc));
-  return bytes;
+  ByteWriter writer;
+  writer.value(std::uint32_t(0));  // the checksum
+  writer.value(kMark);
+  writer.value(kStreamVersion);
+  writer.value(type);
+  writer.value(stream);
+  return checked(writer.bytes + payload);
 }
 
 Datagram Datagram::of(const std::string& bytes) {
   if (bytes.size() < kDatagramHeaderBytes || bytes.size() > kMaxDatagramBytes ||
-      std::memcmp(&bytes[4], kMark, sizeof(kMark)) != 0)
+      bytes.compare(4, kMark.size(), kMark.data(), kMark.size()) != 0)
     throw std::runtime_error("a datagram of another program");
-  std::uint32_t crc = 0;
-  std::memcpy(&crc, &bytes[0], sizeof(crc));
-  if (crc != crcOf(bytes, sizeof(crc)))
+  ByteReader reader(bytes);
+  if (reader.take<std::uint32_t>() != crcOf(bytes))
     throw std::runtime_error("altered: a datagram whose checksum does not match");
-  if (const auto version = static_cast<std::uint8_t>(bytes[6]); version != kStreamVersion)
+  reader.take<DatagramMark>();
+  if (const auto version = reader.take<std::uint8_t>(); version != kStreamVersion)
     throw std::runtime_error("a datagram of version " + std::to_string(version) +
                              " of the protocol, expected " + std::to_string(kStreamVersion));
   Datagram d;
-  d.type = static_cast<Type>(bytes[7]);
+  reader.value(d.type);
   if (d.type < Type::Request || d.type > Type::Cookie)
     throw std::runtime_error("altered: a datagram of type " +
-                             std::to_string(static_cast<std::uint8_t>(bytes[7])));
-  std::memcpy(&d.stream, &bytes[8], sizeof(d.stream));
-  d.payload = bytes.substr(kDatagramHeaderBytes);
+                             std::to_string(static_cast<std::uint8_t>(d.type)));
+  reader.value(d.stream);
+  d.payload = reader.rest();
   return d;
 }
 
@@ -364,9 +370,7 @@ std::string TreeMessage::bytes() const {
   codeMessage(writer, *this);
   writer.value(static_cast<std::uint32_t>(parts.size()));
   for (const std::string& group : parts) writer.text(group);
-  const std::uint32_t crc = crcOf(writer.bytes, sizeof(crc));
-  std::memcpy(&writer.bytes[0], &crc, sizeof(crc));
-  return writer.bytes;
+  return checked(std::move(writer.bytes));
 }
 
 TreeMessage TreeMessage::of(const std::string& bytes) {
@@ -374,7 +378,7 @@ TreeMessage TreeMessage::of(const std::string& bytes) {
   const auto crc = reader.take<std::uint32_t>();
   if (reader.take<TreeMark>() != kTreeMark)
     throw std::runtime_error("no change of a compressed tree, or one of another version");
-  if (crc != crcOf(bytes, sizeof(crc)))
+  if (crc != crcOf(bytes))
     throw std::runtime_error("altered: a change whose checksum does not match");
   TreeMessage m;
   codeMessage(reader, m);

@@ -1,5 +1,6 @@
 #include "StreamTree.h"
 
+#include <semantic_octree/store/TileCodes.h>
 #include <semantic_octree/store/TreeBuilder.h>
 
 #include <algorithm>
@@ -55,14 +56,7 @@ void splitOctant(BlockContent& block, int octant) {
 }  // namespace
 
 CellPath CellPath::of(const Cube& cube) {
-  CellPath cell;
-  while (cell.depth < cube.depth) {
-    const int bit = kTreeDepth - 1 - cell.depth;
-    const Eigen::Array3i& lowest = cube.lowest;
-    cell = cell.child((lowest.x() >> bit & 1) | (lowest.y() >> bit & 1) << 1 |
-                      (lowest.z() >> bit & 1) << 2);
-  }
-  return cell;
+  return CellPath{tileCode(cube.lowest), kTreeDepth}.above(cube.depth);
 }
 
 char* putLeaves(char* to, const TreePart& part) {
