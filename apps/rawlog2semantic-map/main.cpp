@@ -92,7 +92,9 @@ struct Cli {
         "Show the map in a window while it grows, and then until the window is closed");
     addTilesTo(app)->excludes(upkeep)->excludes(window);
     app.add_flag("--pause", pause, "Begin paused, before the first scan")->needs(window);
-    app.add_option("INPUT.rawlog", rawlogs, "Rawlogs, parts of one log in order")->required();
+    app.add_option("INPUT.rawlog", rawlogs,
+                   "Rawlogs, parts of one log in order; of a bag of ROS 2: dataset2rawlog rosbag2")
+        ->required();
   }
 
   CLI::Option* addTilesTo(CLI::App& app) {

@@ -87,29 +87,6 @@ TEST_F(RoadInGrass, isSeenAsMarkersPointsAndOctomap) {
   EXPECT_FALSE(tree.isNodeOccupied(tree.search(3, 0.1, 0.5)));
 }
 
-TEST_F(RoadInGrass, isAGridOfCosts) {
-  start({"-p", "order:=" + order(), "-p", "costs:=10,60"});
-  Heard<ros2::OccupancyGrid> grids(*live, "/map", {true, true, 1});
-  see(1);
-  ASSERT_TRUE(live->waitFor([&] { return grids.last() != nullptr; }));
-  const auto grid = grids.last();
-  EXPECT_EQ(ros2::textOf(grid->header.frame_id), "map");
-  const auto costAt = [&](double x, double y) {
-    const auto& info = grid->info;
-    const auto column = int(std::floor((x - info.origin.position.x) / double(info.resolution)));
-    const auto row = int(std::floor((y - info.origin.position.y) / double(info.resolution)));
-    if (column < 0 || row < 0 || column >= int(info.width) || row >= int(info.height)) return -1;
-    return int(
-        static_cast<std::int8_t>(grid->data._buffer[std::size_t(row) * info.width + column]));
-  };
-  EXPECT_EQ(costAt(3.1, 0.1), 10);   // road
-  EXPECT_EQ(costAt(3.1, 3.1), 60);   // grass
-  EXPECT_EQ(costAt(0.1, 4.1), 100);  // wall
-  EXPECT_EQ(costAt(8.1, 0.1), 100);  // mud, which the order does not name
-  EXPECT_EQ(costAt(15, 0), -1);
-  EXPECT_EQ(live->end(), kStopped) << live->said();
-}
-
 /** A grid as nav2's static layer keeps it: the last whole one, and what changed since. */
 class KeptGrid {
  public:
@@ -117,6 +94,7 @@ class KeptGrid {
       : m_grids(live, "/map", {true, true, 1}), m_updates(live, "/map_updates") {}
   std::size_t grids() const { return m_grids.all().size(); }
   std::size_t updates() const { return m_updates.all().size(); }
+  std::string frame() const { return ros2::textOf(m_grids.last()->header.frame_id); }
   std::shared_ptr<const ros2::OccupancyGridUpdate> update() const { return m_updates.last(); }
   /** -2: there is no such cell. */
   int at(double x, double y) const {
@@ -145,7 +123,12 @@ TEST_F(RoadInGrass, tellsWhatChangedInItsGrid) {
   start({"-p", "order:=" + order(), "-p", "costs:=10,60"});
   KeptGrid kept(*live);
   see(1);
-  ASSERT_TRUE(live->waitFor([&] { return kept.at(3.1, 0.1) == 10; }));
+  ASSERT_TRUE(live->waitFor([&] { return kept.at(3.1, 0.1) == 10; }));  // road
+  EXPECT_EQ(kept.frame(), "map");
+  EXPECT_EQ(kept.at(3.1, 3.1), 60);   // grass
+  EXPECT_EQ(kept.at(0.1, 4.1), 100);  // wall
+  EXPECT_EQ(kept.at(8.1, 0.1), 100);  // mud, which the order does not name
+  EXPECT_LT(kept.at(15, 0), 0);       // unknown, or beyond the grid
   EXPECT_EQ(kept.updates(), 0u);
   const std::size_t grids = kept.grids();
   auto box = scan();  // a thing on the road, 2 m wide
