@@ -122,7 +122,7 @@ mrpt::poses::CPose3D poseOf(const Eigen::Isometry3d& T) {
   return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T.matrix()));
 }
 
-/** Its beams lie evenly around the frame's x axis, which ROS's do not. */
+/** MRPT's scan of ROS's: its beams lie evenly around the frame's x axis, which ROS's do not. */
 mrpt::obs::CObservation2DRangeScan laserScanOf(const bags::BagLaserScan& laser) {
   const auto steps = static_cast<float>(laser.ranges.size()) - 1;
   if (laser.ranges.empty() || !std::isfinite(laser.firstAngle + laser.angleStep * steps))

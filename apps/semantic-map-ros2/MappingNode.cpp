@@ -166,7 +166,7 @@ auto MappingNode::placeOf(const WaitingScan& scan, std::string& problem, bool& i
   return Placed{*robot.T_target_source, *points.T_target_source * scan.T_frame_points};
 }
 
-/** It can be inserted as a whole, or has waited for long enough. */
+/** Whether a scan can be inserted as a whole, or has waited for long enough. */
 bool MappingNode::isDue(const WaitingScan& scan) {
   if (m_endedAt && scan.came > *m_endedAt) return false;
   const double waited = ros2::secondsOf(m_clock.now() - scan.cameAt);

@@ -70,7 +70,7 @@ class BagFrames {
  public:
   /** What is no pose, or makes a ring of frames, is left out. */
   void add(const FramePose& pose, bool isStatic);
-  /** It counts for frames that no transform tells of. Call it after all add(). */
+  /** Odometry counts for frames that no transform tells of. Call it after all add(). */
   void addOdometry(const FramePose& pose);
 
   /** The frame that moves, from a sensor's upwards: the robot. Empty: nothing moves. */

@@ -173,7 +173,7 @@ None where there is none to keep.)")
 weights: a dict from classes to numbers, positive: worth keeping, negative: worth dropping; a
   tuple of names counts as one class, "free_space" is one, too. Or a file of weights (YAML).
 solution: which one of the file; empty: the first.
-options: unknown, block_size, frame, as in files.
+options: unknown, block_size, as in files.
 Raises ValueError naming class and value, TypeError naming an option that there is not,
   RuntimeError naming the file and what is wrong.)");
 }
