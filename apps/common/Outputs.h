@@ -16,7 +16,7 @@ class Outputs {
    * \param what "Rawlog to write" */
   CLI::Option* add(CLI::App& app, std::filesystem::path& output, const std::string& type,
                    const std::string& what);
-  /** The same, once for each of some files. */
+  /** The option -o for several output files: it is given once for each. */
   CLI::Option* add(CLI::App& app, std::vector<std::filesystem::path>& outputs,
                    const std::string& type, const std::string& what);
   /** An option, declared otherwise, whose value is an output, too. */

@@ -7,7 +7,7 @@
 /** What a program says of its own accord: the standard output, or nothing after beQuiet(). What it
  * was asked for goes to std::cout. */
 std::ostream& notes();
-/** The same, of what most do not want to know: nothing but after beVerbose(). */
+/** Details that most do not want to know; says nothing unless beVerbose() was called. */
 std::ostream& details();
 void beQuiet();
 void beVerbose();

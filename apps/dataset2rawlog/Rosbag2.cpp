@@ -124,7 +124,7 @@ mrpt::poses::CPose3D poseOf(const Eigen::Isometry3d& T) {
   return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T.matrix()));
 }
 
-/** Its beams lie evenly around the frame's x axis, which ROS's do not. */
+/** MRPT's scan of ROS's: its beams lie evenly around the frame's x axis, which ROS's do not. */
 mrpt::obs::CObservation2DRangeScan laserScanOf(const point_fields::RawLaserScan& beams) {
   mrpt::obs::CObservation2DRangeScan scan;
   scan.aperture = std::abs(beams.angleStep) * static_cast<float>(beams.ranges.size() - 1);

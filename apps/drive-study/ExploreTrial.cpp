@@ -25,7 +25,7 @@ using synthetic_world::World;
 
 namespace {
 
-/** Its graph needs no compressed tree. */
+/** A planner whose graph needs no compressed tree. */
 semantic_planning::PlannerOptions plannerOf(const simulated_drive::DriveConfig& config) {
   semantic_planning::PlannerOptions options = config.planner;
   options.roadmap.kind = semantic_planning::GraphKind::HaltonDrivable;
@@ -152,7 +152,7 @@ class Glide {
     m_trial.track.push_back(pose);
   }
 
-  /** It knows what is below it where it begins. */
+  /** The robot knows the ground below it where it begins. */
   void standOnGround() {
     constexpr double kAround = 1.2;  // m
     semantic_types::LabeledCloud cloud;

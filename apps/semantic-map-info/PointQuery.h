@@ -16,7 +16,7 @@ nlohmann::ordered_json answersAt(const semantic_octree::SemanticOcTree& map,
                                  const std::vector<strict_files::TextLine>& lines,
                                  bool distribution);
 
-/** The same, an answer a line, separated by tabs; distributions in lines that begin with one. */
+/** Answers as text, a line each, separated by tabs; lines of distributions begin with a tab. */
 std::string textOfAnswers(const nlohmann::ordered_json& answers);
 
 }  // namespace semantic_map_info

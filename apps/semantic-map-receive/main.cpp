@@ -32,7 +32,7 @@ struct ReceptionOptions {
 /** The silence before a request or a receipt goes out again. */
 constexpr milliseconds kPatience(200);
 constexpr std::size_t kPacketsPerReceipt = 16;
-/** So often the sender is told that all is there, unless it says so, too. */
+/** How often the sender is told that all is there, unless it answers. */
 constexpr int kFarewells = 10;
 
 /** Receives one map. */

@@ -30,13 +30,13 @@ using Clock = std::chrono::steady_clock;
 /** The maps to send, one after the other; all receivers get them. */
 using Maps = std::deque<semantic_octree::StoredMap>;
 
-/** So long after all was sent, what was not acknowledged goes out again. */
+/** Time after which packets without a receipt are sent again. */
 constexpr std::chrono::milliseconds kPatience(500);
 /** Bytes of the headers of IP and UDP. */
 constexpr std::size_t kHeaders = 28;
-/** Who does not know yet that it has all is told so, if it asks that late. */
+/** Time after the end in which receivers are still told that they have all. */
 constexpr std::chrono::milliseconds kFarewell(1000);
-/** So long nothing is looked at if nobody is heard. */
+/** Longest wait for a datagram. */
 constexpr std::chrono::milliseconds kTick(100);
 
 /** One receiver: from the request that was granted to its last receipt. */
@@ -84,7 +84,7 @@ class Session {
     return datagram;
   }
 
-  /** It has all maps, or enough. */
+  /** Whether the receiver has all maps, or as much as it wants. */
   bool isServed() const { return !m_sender; }
   /** When it told something new. */
   Clock::time_point lastHeard() const { return m_lastHeard; }

@@ -15,6 +15,8 @@
 #include <semantic_slam/SlamOptions.h>
 #include <synthetic_world/Sensors.h>
 
+#include <utility>
+
 #include "semantic-map-ros2/NodeOptions.h"
 #include "simulated_drive/DriveConfig.h"
 
@@ -62,10 +64,8 @@ std::vector<OptionTable> mapTables() {
                             "programs that read "
                             "maps have `--memory`. See [large maps](large-maps.md)."),
       table<semantic_slam::SlamOptions>(
-          "Poses put right",
+          "SLAM",
           "`[slam]` of `rawlog2semantic-map`, with `--slam`; of drives with noise in the pose."),
-      table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
-      table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
       table<semantic_octree::SmoothingOptions>(
           "Neighbors",
           "`semantic_octree::SmoothedView`, `semantic-map-export`, `semantic-map-evaluate`; these "
@@ -99,11 +99,14 @@ std::vector<OptionTable> labelTables() {
   };
 }
 
-std::vector<OptionTable> worldTables() {
+std::vector<OptionTable> simulationTables() {
   using namespace synthetic_world;
+  using namespace simulated_drive;
   return {
       table<CameraOptions>("Synthetic cameras", "`synth-rawlog`, `semantic-map-drive`."),
       table<LidarOptions>("Synthetic LiDARs", "`synth-rawlog`, `semantic-map-drive`."),
+      table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
+      table<PoseOptions>("Simulated odometry", "`[pose]`; it is corrected as `[slam]` says."),
   };
 }
 
@@ -123,15 +126,13 @@ std::vector<OptionTable> drivingTables() {
   return {
       table<DriveOptions>("Driving", "`[drive]` of `semantic-map-drive` and `drive-study`."),
       table<GuideOptions>("Which path is driven", "`[guide]`."),
-      table<MoverOptions>("Those who move", "`[movers]`."),
+      table<MoverOptions>("People and others who move", "`[movers]`."),
       table<FocusOptions>("Detail along the path",
                           "`[focus]`. What it brings: "
                           "[drives](../how-it-works/drives.md#detail-where-it-drives)."),
-      table<ExploreOptions>("Looking around",
+      table<ExploreOptions>("Exploration",
                             "`[explore]`, for `--explore`: "
                             "[exploration](../how-it-works/exploration.md)."),
-      table<SensorConfig>("Simulated sensors", "`[sensors]`; `[camera]` and `[lidar]` are above."),
-      table<PoseOptions>("Simulated odometry", "`[pose]`; it is corrected as `[slam]` says."),
       table<semantic_map_ros2::NodeOptions>(
           "ROS 2",
           "Parameters of `semantic-map-ros2`, which takes `map`, `insertion`, `abstraction`, "
@@ -139,6 +140,22 @@ std::vector<OptionTable> drivingTables() {
           "`planner`, `drive`, `guide`, `movers` and `focus` of the above, too: "
           "`insertion.max_range`. See [a live map in ROS 2](ros2.md)."),
   };
+}
+
+std::vector<OptionTable> seldomTables() {
+  using namespace semantic_map;
+  return {
+      table<TLikelihoodOptions>("Likelihood of observations", "`_likelihoodOpts`."),
+      table<TRenderingOptions>("The map's 3D object", "`_renderOpts`."),
+  };
+}
+
+/** What a reader of the page wants to do, with its tables. */
+std::vector<std::pair<std::string, std::vector<OptionTable>>> tasks() {
+  return {
+      {"Make maps", mapTables()},       {"Give points their classes", labelTables()},
+      {"Plan", planningTables()},       {"Drive", drivingTables()},
+      {"Simulate", simulationTables()}, {"Seldom needed: in MRPT's applications", seldomTables()}};
 }
 
 std::string rowOf(const Option& option) {
@@ -152,9 +169,8 @@ std::string rowOf(const Option& option) {
 
 std::vector<OptionTable> optionTables() {
   std::vector<OptionTable> tables;
-  for (const auto& group :
-       {mapTables(), labelTables(), worldTables(), planningTables(), drivingTables()})
-    tables.insert(tables.end(), group.begin(), group.end());
+  for (const auto& [task, ofTask] : tasks())
+    tables.insert(tables.end(), ofTask.begin(), ofTask.end());
   return tables;
 }
 
@@ -166,10 +182,13 @@ std::string optionsPage() {
       "neither these nor capitals tell names apart, so that `maxRange` is `max_range`, too. A name "
       "that is unknown and a value that is not allowed are errors that name file, section and key, "
       "and the nearest name that is known. What is left out has its default.\n";
-  for (const OptionTable& table : optionTables()) {
-    page += "\n## " + table.title + "\n" + table.where +
-            "\n\n| option | unit | default | allowed | what |\n|---|---|---|---|---|\n";
-    for (const Option& option : table.list.options()) page += rowOf(option);
+  for (const auto& [task, tables] : tasks()) {
+    page += "\n## " + task + "\n";
+    for (const OptionTable& table : tables) {
+      page += "\n### " + table.title + "\n" + table.where +
+              "\n\n| option | unit | default | allowed | what |\n|---|---|---|---|---|\n";
+      for (const Option& option : table.list.options()) page += rowOf(option);
+    }
   }
   return page;
 }

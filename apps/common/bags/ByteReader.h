@@ -37,7 +37,7 @@ class ByteReader {
     std::memcpy(&value, raw.data(), sizeof(T));
     return value;
   }
-  /** Its length in four bytes stands before it. */
+  /** A text, which its length in four bytes precedes. */
   std::string_view text() { return bytes(number<std::uint32_t>()); }
 
  private:

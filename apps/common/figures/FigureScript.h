@@ -18,10 +18,11 @@ std::string gnuplotText(const std::string& text);
 /** A solution's color, the same in all figures. */
 const char* colorOf(std::size_t solution);
 
-/** Its line's dashes, as gnuplot's `dashtype` has them: a curve shows through one upon it. */
+/** Dashes of a solution's line, as gnuplot's `dashtype` has them: a curve shows through one upon
+ * it. */
 const char* dashOf(std::size_t solution);
 
-/** Its points, as gnuplot's `pointtype` has them: filled shapes. */
+/** Points of a solution, as gnuplot's `pointtype` has them: filled shapes. */
 int pointOf(std::size_t solution);
 
 /** How a solution is drawn "with linespoints": dashes, points and color. */

@@ -16,9 +16,9 @@ class LabelNoise {
  public:
   enum class Kind {
     Points,  ///< each label by itself, by any other class
-    /** As networks err: what is of a class within a cube of 1.5 to 4 m is wrong as a whole, anew in
-     * each scan. Classes are wrong with 1/4 to 7/4 of the share, and are taken for three others, in
-     * a half, a third and a sixth of the cases. */
+    /** Patches, as networks err: what is of a class within a cube of 1.5 to 4 m is wrong as a
+     * whole, anew in each scan. Classes are wrong with 1/4 to 7/4 of the share, and are taken for
+     * three others, in a half, a third and a sixth of the cases. */
     Blobs,
     Persistent  ///< blobs, half of which are wrong in the same way in all scans
   };

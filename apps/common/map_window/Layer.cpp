@@ -21,10 +21,10 @@ namespace {
 constexpr int kMostLevels = 8;
 /** The share of the budget for tiles while a coarser map is made of them. */
 constexpr double kShareOfTiles = 0.25;
-/** As maps of streets have them. */
+/** Bytes of a leaf, as in maps of streets. */
 constexpr std::size_t kBytesOfLeaf = 6;
 
-/** So many levels less that the map will probably fit. */
+/** Levels to leave out so that the map probably fits. */
 int levelsFor(const SemanticOcTree& map, std::size_t bytes) {
   std::array<std::size_t, kTreeDepth + 1> nodes{}, leaves{};
   for (auto node = map.begin_tree(kTreeDepth - 1); node != map.end_tree(); ++node) {

@@ -98,7 +98,7 @@ class LiveMap::Window {
 
   void show(double seconds) {
     if (!m_isOpen) return;
-    // Else those that are far away would never have their turn.
+    // While tiles are still drawn, others wait: else tiles far away would never have their turn.
     if (!m_changed.isEmpty() && m_isComplete) {
       m_viewer.tiles().touch({keysOf(m_changed)});
       m_changed.setEmpty();

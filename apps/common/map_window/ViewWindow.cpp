@@ -31,7 +31,7 @@ void closeMenus(nanogui::Widget& widget) {
   for (nanogui::Widget* child : widget.children()) closeMenus(*child);
 }
 
-/** Its name; empty: there is none. */
+/** Name of the display; empty: there is none. */
 std::string displayName() {
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
     if (const char* value = std::getenv(name); value && *value) return value;

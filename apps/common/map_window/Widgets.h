@@ -83,7 +83,7 @@ nanogui::Widget* addScroll(nanogui::Widget* parent, int width, int height);
 /** A line of text of a fixed width. */
 nanogui::Label* addText(nanogui::Widget* parent, const std::string& text, int width);
 
-/** As many lines as it takes. */
+/** A text of as many lines as it needs. */
 nanogui::Label* addLines(nanogui::Widget* parent, int width);
 
 nanogui::Button* addButton(nanogui::Widget* parent, const std::string& text, int width,

@@ -15,7 +15,7 @@ class Stopwatch {
 
   /** Milliseconds since it began, or since the last lap. */
   double milliseconds() const { return now(m_what) - m_begin; }
-  /** The same, and begins anew. */
+  /** Milliseconds since the begin; the stopwatch begins anew. */
   double lap();
 
  private:

@@ -234,7 +234,7 @@ class KeyframeMap::Correction {
     m_tiles.swap(all);
   }
 
-  /** As they will be. */
+  /** Voxels of a scan after the move. */
   const Content::StoredVoxels& voxelsOf(std::size_t scan) const {
     return m_voxels[scan] ? *m_voxels[scan] : m.scans[scan].voxels;
   }

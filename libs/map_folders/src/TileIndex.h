@@ -25,10 +25,10 @@ struct TileIndex {
   int depth = 0;          ///< of tiles
   std::string frame = "map";
   std::vector<std::string> classes;  ///< names, to be read; leaves.*.semantic has all of them
-  /** That of the save; 0: there was none. */
+  /** Number of the save; 0: nothing was saved. */
   std::uint64_t generation = 0;
   std::vector<Tile> tiles;
-  /** As large as tiles, or larger. */
+  /** Leaves as large as tiles, or larger. */
   std::vector<Cube> leaves;
   std::uint32_t leavesChecksum = 0;  ///< of their file
   /** Files that earlier saves needed and this does not. Nobody removes others. */

@@ -13,16 +13,16 @@ namespace semantic_octree {
 namespace {
 
 constexpr std::size_t kMostVoxels = 32768;
-/** So many points of a scan are looked at, at most. */
+/** Most points of a scan that are looked at. */
 constexpr std::size_t kMostPoints = 32768;
-/** So many labels of a voxel are kept, at most. */
+/** Most labels of a voxel that are kept. */
 constexpr std::size_t kMostLabels = 64;
 /** What the map has counts like so many labels. */
 constexpr double kLabelsBefore = 100;
 /** Labels of each class that count as seen at first, right as often as the filter's accuracy says.
  * A matrix is cautious where a class is rare; a fit does not state the accuracy once more. */
 constexpr double kLabelsOfMatrix = 1000, kLabelsOfFit = 20;
-/** So many labels of a voxel cannot outvote each other. */
+/** Labels of a voxel that are too few to outvote each other. */
 constexpr std::size_t kFew = 2;
 constexpr double kSteps = 256;
 

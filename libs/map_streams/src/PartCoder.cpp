@@ -319,7 +319,7 @@ std::string PartCoder::toText() const {
   return writer.bytes;
 }
 
-/** As if each were told anew: what cannot be is refused. */
+/** Codes each value as if it were told anew; a value that cannot be is refused. */
 void PartCoder::checkRecords() const {
   const PartCoder plain(m_numClasses, m_rootDepth);
   for (const LeafContent& leaf : m_records) {

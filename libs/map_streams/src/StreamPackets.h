@@ -53,7 +53,7 @@ struct PacketHeader {
 constexpr std::size_t kHeaderBytes = 12 + PacketHeader::kBytes;
 constexpr std::size_t kMaxContent = kMaxDatagramBytes - kHeaderBytes;
 
-/** Of which kind a tree's maps are, and how its parts are coded. */
+/** The kind of a tree's maps, and the coder of its parts. */
 struct StreamKind {
   std::unique_ptr<SemanticOcTree> empty;
   std::unique_ptr<PartCoder> coder;

@@ -85,7 +85,7 @@ class StreamTree {
   NodeArena& arena() { return m_store->arena(0); }
   /** The cube's slot, or that of the block that it is in; null: there is none. */
   Slot* find(const CellPath& cell);
-  /** The same, which is made if need be. */
+  /** The slot of a cell, which is made if need be. */
   Slot& makePlace(const CellPath& cell);
   void replace(Slot& slot, Slot by);
   void setLeaf(Slot& slot, const CellPath& cell, const StreamLeaf& leaf);

@@ -219,7 +219,7 @@ TreeParts partsOfChange(SemanticOcTree& map, const StreamTree& before) {
     result.alphas.push_back(steps.alphas().alpha(step));
     result.ties.push_back(steps.alphas().highestAlpha(step));
   }
-  // Also of what rounding alone expands.
+  // The tree of alpha also has what rounding alone expands.
   result.alphas.push_back(abstraction.options().weights.alpha);
   result.ties.push_back(result.alphas.back());
   Comparison(CompressedMap{map, abstraction}, abstraction.rootDepth(), &steps, nullptr,

@@ -41,7 +41,7 @@ struct MapNode {
   }
 };
 
-/** So are inner nodes that the compressed tree does not expand. */
+/** Inner nodes that the compressed tree does not expand are cells, too. */
 struct CompressedNode : MapNode {
   const LiveCompression* compression;
   InformationTree::Index index = 0;  ///< of an inner node of the map
@@ -105,7 +105,7 @@ class Walk {
       if (!cell.node.child(i)) f(unknownChild(cell, i));
   }
 
-  /** As large cubes as there are within the bounds. */
+  /** The largest cubes that lie within the bounds. */
   void walkUnknown(const ViewCell& cell) const {
     if (!m_box.meets(cell) || !m_bounds.meets(cell)) return;
     if (cell.depth == m_maxDepth || m_bounds.contains(cell)) {

@@ -105,7 +105,7 @@ std::string nameOf(const py::handle& argument) {
                         " is no name of a class");
 }
 
-/** As files have it. */
+/** A value as files have it. */
 std::string textOf(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
   if (value.is_none()) return "none";

@@ -150,8 +150,8 @@ DriveCommand DriveController::besideMovers(const DriveState& state, DriveCommand
   return wanted;
 }
 
-/** As it is wanted; or slowly, so that the steering gets there before it is where it must not be;
- * or a stop. \param since seconds since the last motion */
+/** The motion that is wanted; or a slow one, so that the steering gets there in time to miss what
+ * is in the way; or a stop. \param since seconds since the last motion */
 Motion DriveController::safeMotion(const DriveState& state, const DriveCommand& wanted,
                                    const ObstaclePoints& obstacles, double since) const {
   const DriveOptions& options = m_tracker.options();

@@ -42,7 +42,7 @@ bool isQuestion(const Action& action) {
          is<SeekBack>(action) || is<SeekNearest>(action);
 }
 
-/** As poses are given on command lines. */
+/** A pose as command lines have it. */
 std::string textOf(const TPose2D& pose) {
   return mrpt::format("%.2f,%.2f,%.0f", pose.x, pose.y, pose.phi * 180 / M_PI);
 }

@@ -64,7 +64,7 @@ Rank ForwardTurns::worstOf(const DrivePath& path) const {
   return worst;
 }
 
-/** It fits, and meets no worse class than it may. */
+/** Whether a curve fits, and meets no worse class than the path that it replaces. */
 bool ForwardTurns::isDrivable(const Curve& c, const DrivePath& path) const {
   const semantic_planning::Ground& ground = m_planner.ground();
   const auto profile =

@@ -37,13 +37,13 @@ class GoalRegion {
   bool isReached(semantic_planning::Column c) const { return is(kReached, c); }
   /** Something is in the way. \param c in the rectangle */
   bool isObstacle(semantic_planning::Column c) const { return is(kObstacle, c); }
-  /** So near to an obstacle that the vehicle cannot be there. \param c in the rectangle */
+  /** Whether a column is too near to an obstacle for the vehicle. \param c in the rectangle */
   bool isKept(semantic_planning::Column c) const { return is(kKept, c); }
   bool isGoalReached() const { return m_goalReached; }
   /** No reached column borders on the region: no way leads to the goal. */
   bool isEnclosed() const { return m_enclosed; }
   std::size_t columns() const { return m_size; }
-  /** It goes on beyond the rectangle. */
+  /** Whether the region goes on beyond the rectangle. */
   bool isOpen() const { return m_rim; }
 
  private:

@@ -164,7 +164,7 @@ Transition after(GuideState state, const SeekBack&, const Answer& answer) {
   return follow(state, GoingBack{});
 }
 
-/** Another goal, or none. */
+/** After a search for the nearest pose that fits: it is the goal, or there is none. */
 Transition after(GuideState state, const SeekNearest&, const Answer& answer) {
   state.misfitSince.reset();
   if (!answer.found) {

@@ -80,7 +80,7 @@ class Forecast {
   const DriveOptions& m_options;
 };
 
-/** Who stands is an obstacle like others. */
+/** A person who stands is an obstacle like others. */
 bool letsPass(const Forecast& forecast, double target, const Mover& mover) {
   return mover.stands() || forecast.isFreeAhead(target, mover, false) ||
          forecast.isFreeAtRest(target, mover);

@@ -43,7 +43,7 @@ CSemanticOctoMap::CSemanticOctoMap(SemanticOcTree tree)
 
 CSemanticOctoMap::~CSemanticOctoMap() = default;
 
-// Those who observe a map do not observe its copies, which is why the base class is not copied.
+// Observers of a map do not observe its copies: so the base class is not copied.
 CSemanticOctoMap::CSemanticOctoMap(const CSemanticOctoMap& o) : CSemanticOctoMap(o.wholeTree()) {
   copyAllButTree(o);
 }

@@ -155,7 +155,7 @@ void Mapper::finish() {
   if (m_keyframes) moveKeyframes(-1);
 }
 
-/** Those that are elsewhere by so much that what is 10 m away is off by more; below 0: all. */
+/** Moves keyframes whose points 10 m away are off by more than this; below 0: all keyframes. */
 void Mapper::moveKeyframes(double meters) {
   constexpr double kSeenFrom = 10;  // m
   std::vector<semantic_octree::KeyframePose> off;

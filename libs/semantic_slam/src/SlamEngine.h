@@ -135,7 +135,7 @@ class SlamEngine {
   /** Points of some keyframes in the frame of one of them. */
   Seen pointsOf(std::size_t first, std::size_t last, std::size_t frame) const;
   std::optional<Registration> findInReference(const Seen& seen, const Pose& T_map_guess);
-  /** That a keyframe was found in the reference. */
+  /** The edge that says where in the reference a keyframe was found. */
   PoseEdge lookOf(std::size_t keyframe, const Registration& found) const;
   bool followReference();
   /** Takes an edge of the newest keyframe, and those before it that say the same of where the robot

@@ -43,7 +43,7 @@ class StageClock {
  * search as long as nothing is in the way and no other way costs clearly less. */
 class KeptPath {
  public:
-  /** Both must outlive this. */
+  /** Checker and prices must outlive the path. */
   KeptPath(const CollisionChecker& checker, const ClassPrices& prices)
       : m_checker(checker), m_prices(prices) {}
 

@@ -32,7 +32,7 @@ PlannerOptions validated(const PlannerOptions& options,
   return options;
 }
 
-/** Those that a corridor's ground is limited to. */
+/** Tiles that a corridor's ground is limited to. */
 std::optional<std::vector<Column>> tilesOf(const std::optional<Corridor>& corridor,
                                            double voxelSize) {
   if (!corridor) return std::nullopt;

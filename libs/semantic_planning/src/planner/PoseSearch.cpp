@@ -265,7 +265,7 @@ std::vector<PathPoint> PoseSearch::joined() const {
 
 namespace {
 
-/** As if driven from its end to its begin. */
+/** The path as if it were driven from its end to its begin. */
 std::vector<PathPoint> reversed(const std::vector<PathPoint>& path) {
   std::vector<PathPoint> back(path.rbegin(), path.rend());
   for (std::size_t i = 0; i < back.size(); ++i) {

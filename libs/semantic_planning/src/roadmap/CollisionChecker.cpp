@@ -28,7 +28,7 @@ inline colored_graph::EdgeProfile roundedDown(const std::vector<double>& lengths
   return profile;
 }
 
-/** They add up to the total. */
+/** Lengths per class as integers that add up to the total. */
 inline colored_graph::EdgeProfile rounded(const std::vector<double>& lengths, double total) {
   colored_graph::EdgeProfile profile = roundedDown(lengths);
   colored_graph::Length left = colored_graph::lengthUp(total);
