@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "roadmap/Halton.h"
+#include "roadmap/Candidates.h"
 
 using namespace semantic_planning;
 

@@ -1,4 +1,4 @@
-#include "planner/RelaxedSearch.h"
+#include "planner/RelaxedField.h"
 
 #include <cmath>
 #include <queue>
@@ -6,7 +6,6 @@
 
 #include "PlannerFixture.h"
 #include "ground/SurfaceTile.h"
-#include "planner/RelaxedField.h"
 
 using namespace semantic_planning;
 

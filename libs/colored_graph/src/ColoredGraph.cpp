@@ -1,5 +1,7 @@
 #include <colored_graph/ColoredGraph.h>
 
+#include <colored_graph/ChangeLog.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -162,6 +164,15 @@ Length ColoredGraph::checkedLength(const EdgeProfile& profile) const {
 
 void ColoredGraph::logVertex(VertexId v) {
   m_changes.push(v, std::max(kShortestLog, m_vertices.size() / 2));
+}
+
+void ChangeLog::push(VertexId vertex, std::size_t keep) {
+  if (m_vertices.size() >= 2 * keep) {
+    const std::size_t drop = m_vertices.size() - keep;
+    m_vertices.erase(m_vertices.begin(), m_vertices.begin() + static_cast<std::ptrdiff_t>(drop));
+    m_dropped += drop;
+  }
+  m_vertices.push_back(vertex);
 }
 
 }  // namespace colored_graph

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ColumnRectangle.h"
+#include "GroundFlood.h"
 
 namespace semantic_driving {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "ColumnRectangle.h"
+#include "GroundFlood.h"
 
 namespace semantic_driving {
 

@@ -6,7 +6,6 @@
 
 #include "ColumnGrid.h"
 #include "GroundShape.h"
-#include "MortonOrder.h"
 #include "SurfaceTile.h"
 
 namespace semantic_planning {

@@ -15,7 +15,6 @@
 
 #include "PlannerCore.h"
 #include "RelaxedField.h"
-#include "RelaxedSearch.h"
 #include "ground/GroundTiles.h"
 #include "ground/SurfaceTile.h"
 

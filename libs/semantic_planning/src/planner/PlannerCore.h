@@ -8,8 +8,8 @@
 
 #include "ClassPrices.h"
 #include "KeptPath.h"
-#include "RelaxedSearch.h"
-#include "roadmap/CandidateStore.h"
+#include "RelaxedField.h"
+#include "roadmap/Candidates.h"
 #include "roadmap/MapRoadmap.h"
 
 namespace semantic_planning {

@@ -313,8 +313,6 @@ double costOfTurning(const CollisionChecker& checker) {
   return M_PI * checker.reedsShepp().turningRadius() + checker.motionCost().gearChange();
 }
 
-CurveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }
-
 GroundPose poseAt(const PathPoint& p, const Ground& ground) {
   return {{p.x, p.y, p.heading}, ground.keyOf(p.z)};
 }

@@ -1,10 +1,12 @@
 #pragma once
 #include <mrpt/math/TPose2D.h>
 #include <semantic_abstraction/Abstraction.h>
+#include <semantic_octree/SemanticOcTree.h>
 #include <semantic_planning/ground/Ground.h>
 #include <semantic_planning/roadmap/CollisionChecker.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -12,7 +14,25 @@
 #include <tuple>
 #include <vector>
 
+#include "ground/ColumnGrid.h"
+
 namespace semantic_planning {
+
+/** The digits of i in a base, mirrored at the point: a number in [0, 1). */
+inline double radicalInverse(unsigned i, unsigned base) {
+  double inverse = 0, weight = 1;
+  for (; i > 0; i /= base) {
+    weight /= base;
+    inverse += weight * (i % base);
+  }
+  return inverse;
+}
+
+/** The i-th point, from 1 on, of a sequence that fills [0, 1)^4 evenly (Halton, "On the efficiency
+ * of certain quasi-random sequences of points in evaluating multi-dimensional integrals", 1960). */
+inline std::array<double, 4> haltonPoint(unsigned i) {
+  return {radicalInverse(i, 2), radicalInverse(i, 3), radicalInverse(i, 5), radicalInverse(i, 7)};
+}
 
 /** A number in [0, 1) that looks random: mixes the bits of three (the finalizer of MurmurHash3). */
 inline double unitHash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -94,5 +114,53 @@ void drawHalton(const HaltonSearch& search,
 /** A number in [0, 1) that spreads the cells of a grid: the fraction of cells below any bound is
  * the bound, in every neighborhood (ordered dithering, Bayer 1973). */
 double dither(unsigned x, unsigned y, unsigned seed);
+
+/** The candidate points of GraphKind::Compressed, Leaves and Full, which depend on the map and not
+ * on start and goal: each tile's are looked for once and kept until the map changes there. Other
+ * kinds have none. */
+class CandidateStore {
+ public:
+  /** \param map, ground must outlive the store; with kinds of the tree (isOfTree) the map keeps
+   * G-values.
+   */
+  CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
+                 const RoadmapOptions& options);
+
+  const Ground& ground() const { return m_ground; }
+
+  /** Least priority first. */
+  const std::vector<CandidatePoint>& in(Column tile) { return made(tile).points; }
+
+  void forget() { m_tiles = {}; }
+
+  struct Change {
+    std::vector<CandidatePoint> removed, added;
+  };
+  /** Brings the store up to date with map and ground. \param changedTiles of the ground
+   * \return what changed in tiles that were asked for, or whose ground changed. */
+  Change update(const semantic_octree::TileChange& touched,
+                const std::vector<Column>& changedTiles);
+
+ private:
+  struct Tile {
+    bool made = false;
+    std::vector<CandidatePoint> points;
+    int lowest = 0, highest = -1;  ///< keys of drivable surfaces
+  };
+
+  /** Whether the compressed tree's changes matter. */
+  bool follows() const { return isOfTree(m_options.kind) && !m_map.isReadOnly(); }
+  Tile& made(Column tile);
+  Tile make(Column tile) const;
+  /** Tiles whose points may depend on a leaf. */
+  void addTilesOf(const semantic_octree::Cube& leaf, std::vector<Column>& tiles);
+  std::vector<Column> outdated(const semantic_octree::TileChange& touched);
+
+  semantic_octree::SemanticOcTree& m_map;
+  semantic_octree::LeafFollower m_follower;  ///< of the compressed tree's leaves
+  const Ground& m_ground;
+  const RoadmapOptions m_options;
+  ColumnGrid<Tile> m_tiles;
+};
 
 }  // namespace semantic_planning

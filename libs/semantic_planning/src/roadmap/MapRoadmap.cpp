@@ -5,7 +5,7 @@
 #include <queue>
 
 #include "TileMarks.h"
-#include "ground/MortonOrder.h"
+#include "ground/ColumnGrid.h"
 
 namespace semantic_planning {
 

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "CandidateStore.h"
 #include "Candidates.h"
 
 namespace semantic_planning {

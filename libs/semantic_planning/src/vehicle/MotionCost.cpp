@@ -21,8 +21,6 @@ CurveState stateOf(const ReedsSheppCurve::Segment& segment, double turningRadius
   return {segment.length > 0, segment.turn / turningRadius};
 }
 
-CurveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }
-
 template <class Iterator>
 CurveState firstOf(Iterator begin, Iterator end, double turningRadius) {
   const Iterator first = std::find_if(begin, end, isSomething);

@@ -47,6 +47,8 @@ class MotionCost {
   double m_reverse, m_gearChange, m_steering;
 };
 
+/** On the way to a point. */
+inline CurveState stateAt(const PathPoint& p) { return {p.forward, p.curvature}; }
 /** How a curve begins and ends; of one without length, going ahead. */
 CurveState beginOf(const ReedsSheppCurve& curve);
 CurveState endOf(const ReedsSheppCurve& curve);

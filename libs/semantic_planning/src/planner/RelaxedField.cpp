@@ -1,4 +1,4 @@
-#include "RelaxedSearch.h"
+#include "RelaxedField.h"
 
 #include <semantic_planning/planner/Slices.h>
 
@@ -9,10 +9,8 @@
 #include <utility>
 
 #include "ClassPrices.h"
-#include "RelaxedField.h"
 
 namespace semantic_planning {
-
 namespace {
 
 using Cost = RelaxedField::Cost;
