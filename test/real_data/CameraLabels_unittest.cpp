@@ -9,15 +9,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "CountedLabels.h"
 #include "DataSets.h"
 #include "SharedData.h"
 
 using labeled_cloud::LabeledScan;
 using labeled_cloud::LabelImage;
 using mrpt::poses::CPose3D;
-using semantic_types::ClassId;
-using semantic_types::ClassTable;
-using semantic_types::kNoClass;
 
 namespace {
 
@@ -99,8 +97,7 @@ Eigen::Isometry3d kittiCameraFromLidar() {
 /** Labels a street's scans by pictures that their labels were painted into. \param wrong Degrees by
  * which the calibration is turned. */
 Share labelStreetByCamera(double wrong) {
-  const ClassTable table =
-      semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/semantic_kitti.yaml");
+  const ClassTable table = shippedTable("semantic_kitti.yaml");
   const Eigen::Isometry3d T_camera_lidar = kittiCameraFromLidar();
   const CPose3D T_lidar_camera(mrpt::math::CMatrixDouble44(T_camera_lidar.inverse().matrix()));
   const CPose3D turn(0, 0, 0, mrpt::DEG2RAD(wrong), 0, 0);
@@ -128,8 +125,7 @@ Share labelStreetByCamera(double wrong) {
 
 /** Labels a flat's depth images by the color image of a camera beside, painted from the labels. */
 Share labelFlatByColorCamera(double occlusionParallax) {
-  const ClassTable table =
-      semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/replica_apartment.yaml");
+  const ClassTable table = shippedTable("replica_apartment.yaml");
   const PaintingCamera color(640, 480, 300, 320, 240, -0.1);
   const CPose3D beside = CPose3D(0.02, -0.25, 0.05, mrpt::DEG2RAD(3.0), mrpt::DEG2RAD(-2.0), 0) +
                          mrpt::obs::CObservation3DRangeScan().relativePoseIntensityWRTDepth;

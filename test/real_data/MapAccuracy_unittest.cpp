@@ -10,8 +10,6 @@
 #include "SharedData.h"
 #include "TemporaryFolder.h"
 
-using semantic_octree::CellState;
-
 namespace {
 
 constexpr double kKittiResolution = 0.2, kKittiRange = 25, kReplicaResolution = 0.05;
@@ -31,43 +29,6 @@ MapQuality kittiQuality(const std::string& sequence) {
   const ClassTable table = shippedTable("semantic_kitti.yaml");
   const auto frames = readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, table);
   return splitQuality(frames, table, kKittiResolution, kKittiRange);
-}
-
-/** Right answers of a map and of counting, from the same labels to the same points. */
-struct NoisyQuality {
-  std::size_t points = 0, right = 0, rightCounted = 0;
-  double accuracy() const { return static_cast<double>(right) / static_cast<double>(points); }
-  double countedAccuracy() const {
-    return static_cast<double>(rightCounted) / static_cast<double>(points);
-  }
-};
-
-/** Even frames with 30 % of wrong labels are asked for the true classes of the odd ones' points. */
-NoisyQuality noisyQuality(const std::vector<LabeledFrame>& frames, const ClassTable& table,
-                          double resolution) {
-  SemanticOcTree map(resolution, table);
-  CountedLabels counted;
-  std::mt19937 random(1);
-  for (std::size_t i = 0; i < frames.size(); i += 2) {
-    LabeledFrame noisy = frames[i];
-    disturb(noisy.cloud.classes, 0.3, table.size(), random);
-    map.insert(noisy.cloud, noisy.T_map_sensor);
-    for (std::size_t k = 0; k < noisy.cloud.size(); ++k)
-      counted.add(voxelOf(map, noisy, k), noisy.cloud.classes[k]);
-  }
-  NoisyQuality quality;
-  for (std::size_t i = 1; i < frames.size(); i += 2)
-    for (std::size_t k = 0; k < frames[i].cloud.size(); ++k) {
-      const ClassId truth = frames[i].cloud.classes[k];
-      if (truth == kNoClass || frames[i].isMoving(k)) continue;
-      const Voxel voxel = voxelOf(map, frames[i], k);
-      const CellState state = map.query(octomap::OcTreeKey(voxel[0], voxel[1], voxel[2]));
-      if (state.status != CellState::Status::Occupied || counted.at(voxel) == kNoClass) continue;
-      ++quality.points;
-      quality.right += state.likeliestClass == truth;
-      quality.rightCounted += counted.at(voxel) == truth;
-    }
-  return quality;
 }
 
 }  // namespace
@@ -90,22 +51,6 @@ TEST(MapAccuracy, evenImagesOfAFlatAnswerTheOddOnes) {
       splitQuality(frames, shippedTable("replica_apartment.yaml"), kReplicaResolution, HUGE_VAL);
   EXPECT_GE(quality.accuracy(), 0.98);
   EXPECT_GE(quality.coverage(), 0.92);
-}
-
-TEST(MapAccuracy, theMapSeesThroughThirtyPercentOfWrongLabelsAsCountingDoes) {
-  SKIP_WITHOUT_DATA("semantic_kitti");
-  const ClassTable table = shippedTable("semantic_kitti.yaml");
-  for (const char* sequence : {"00", "07"}) {
-    const auto frames = readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, table);
-    for (const double resolution : {0.1, kKittiResolution}) {
-      const NoisyQuality quality = noisyQuality(frames, table, resolution);
-      EXPECT_GE(quality.accuracy(), quality.countedAccuracy() - 0.005)
-          << sequence << " at " << resolution << " m";
-      const std::string of = std::string("_") + sequence + (resolution < 0.2 ? "_fine" : "");
-      RecordProperty("accuracy" + of, std::to_string(quality.accuracy()));
-      RecordProperty("counted" + of, std::to_string(quality.countedAccuracy()));
-    }
-  }
 }
 
 namespace {

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "CountedLabels.h"
 #include "DataSets.h"
-#include "MapQuality.h"
 #include "RunProgram.h"
 #include "SharedData.h"
 #include "TemporaryFolder.h"
@@ -17,10 +17,6 @@
 using labeled_cloud::CObservationLabeledCloud;
 using labeled_cloud::ConfusionMatrix;
 using labeled_cloud::LabelModel;
-using semantic_octree::SemanticOcTree;
-using semantic_types::ClassId;
-using semantic_types::ClassTable;
-using semantic_types::kNoClass;
 using semantic_types::LabeledCloud;
 
 namespace {
@@ -28,9 +24,7 @@ namespace {
 const std::filesystem::path kConfig = std::filesystem::path(MSO_SOURCE_DIR) / "config";
 constexpr double kResolution = 0.2;
 
-ClassTable kittiTable() {
-  return semantic_types::loadClassTable(kConfig / "classes/semantic_kitti.yaml");
-}
+ClassTable kittiTable() { return shippedTable("semantic_kitti.yaml"); }
 
 /** The scans with the network's soft labels, as the programs save them. */
 std::vector<LabeledCloud> labelByNetwork(const TemporaryFolder& folder) {

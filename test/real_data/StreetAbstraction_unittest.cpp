@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "CountedLabels.h"
 #include "DataSets.h"
 #include "SharedData.h"
 
@@ -27,8 +28,7 @@ AbstractionOptions roadsNotPlants(const ClassTable& table) {
 
 TEST(StreetAbstraction, incrementalEqualsBatchAfterEveryScanAndPrunedEqualsUnpruned) {
   SKIP_WITHOUT_DATA("semantic_kitti");
-  const ClassTable table =
-      semantic_types::loadClassTable(MSO_SOURCE_DIR "/config/classes/semantic_kitti.yaml");
+  const ClassTable table = shippedTable("semantic_kitti.yaml");
   const AbstractionOptions options = roadsNotPlants(table);
   InsertionOptions insertion;
   insertion.maxRange = 25;
@@ -70,8 +70,7 @@ Eigen::Isometry3d perturbed(Eigen::Isometry3d T, std::mt19937& random) {
 TEST_P(CorrectedStreet, isTheMapOfTheTruePosesToTheBit) {
   const std::string sequence = std::string("semantic_kitti/") + GetParam();
   SKIP_WITHOUT_DATA(sequence);
-  const auto table = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
-                                                    "config/classes/semantic_kitti.yaml");
+  const auto table = shippedTable("semantic_kitti.yaml");
   const auto frames = readSemanticKitti(sharedDataDir() / sequence, table);
   SemanticOcTree map(0.2, table), expected(0.2, table);
   AbstractionOptions abstraction;
@@ -99,8 +98,6 @@ TEST_P(CorrectedStreet, isTheMapOfTheTruePosesToTheBit) {
 INSTANTIATE_TEST_SUITE_P(Sequences, CorrectedStreet, testing::Values("00", "07"));
 
 using mrpt::maps::COccupancyGridMap2D;
-using semantic_types::ClassTable;
-
 namespace {
 
 struct RightPoints {
@@ -130,8 +127,7 @@ void judge(const COccupancyGridMap2D& grid, const LabeledFrame& frame, const Cla
 
 TEST(StreetGrid, theRoadIsFreeAndCarsAndWallsAreOccupied) {
   SKIP_WITHOUT_DATA("semantic_kitti");
-  const ClassTable classes = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
-                                                            "config/classes/semantic_kitti.yaml");
+  const ClassTable classes = shippedTable("semantic_kitti.yaml");
   const auto frames = readSemanticKitti(sharedDataDir() / "semantic_kitti/00", classes);
   semantic_octree::SemanticOcTree map(0.2, classes);
   for (const LabeledFrame& frame : frames) map.insert(frame.cloud, frame.T_map_sensor);

@@ -32,27 +32,12 @@ MapContents contentsOf(const SemanticOcTree& tree) {
 
 namespace {
 
-/** A map's nodes as they are. */
-class CopyCursor {
- public:
-  CopyCursor(int numClasses, const Node& node) : m_numClasses(numClasses), m_node(node) {}
-  bool known() const { return static_cast<bool>(m_node); }
-  bool isLeaf() const { return m_node.isLeaf(); }
-  LeafContent content() const { return contentOf(m_node, m_numClasses); }
-  CopyCursor child(int i) const {
-    return {m_numClasses, m_node.isLeaf() ? m_node : m_node.child(i)};
-  }
-
- private:
-  int m_numClasses;
-  Node m_node;
-};
-
 /** Range of voxels, as keys, both ends included. */
 struct VoxelBox {
-  VoxelIndex first, last;
+  VoxelIndex first = VoxelIndex::Constant(0), last = VoxelIndex::Constant(kNumKeys - 1);
 };
 
+/** A map's nodes in a box, as they are. */
 class CropCursor {
  public:
   CropCursor(int numClasses, const VoxelBox& box, const Node& node, const Cube& cell)
@@ -108,10 +93,9 @@ class CoarseCursor {
       const int octant = m_depth == 0 ? i : m_octant;
       return {m_numClasses, m_levels, towardsMiddle ? m_node : Node(), m_depth + 1, octant};
     }
-    if (m_depth == m_levels && m_depth > 0)
-      return {m_numClasses, m_levels, i == 7 - m_octant ? childNode(m_octant) : Node(), m_depth + 1,
-              -1};
-    return {m_numClasses, m_levels, childNode(i), m_depth + 1, -1};
+    const bool isEdge = m_depth == m_levels && m_depth > 0;
+    const Node node = !isEdge ? childNode(i) : i == 7 - m_octant ? childNode(m_octant) : Node();
+    return {m_numClasses, m_levels, node, m_depth + 1, -1};
   }
 
  private:
@@ -134,7 +118,9 @@ class CoarseCursor {
 
 void copyTo(SemanticOcTree& copy, const SemanticOcTree& map) {
   TreeBuilder::checkTarget(copy, map);
-  TreeBuilder::fill(copy, CopyCursor(map.numClasses(), map.root()), TreeBuilder::Merge::Never);
+  const VoxelBox all;
+  TreeBuilder::fill(copy, CropCursor(map.numClasses(), all, map.root(), Cell()),
+                    TreeBuilder::Merge::Never);
 }
 
 SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box) {
@@ -207,15 +193,12 @@ class MoveCursor {
                                    Eigen::Vector3d::Constant(m_nodeCell.edge() / 2);
     const auto low = (b.min().array() >= middle.array()).eval();
     const auto high = (b.max().array() > middle.array()).eval();
-    if (m_nodeCell.depth > 0 || boundsOf(m_nodeCell).contains(b)) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (low[axis] != high[axis]) return false;
-      const int i = low[0] | low[1] << 1 | low[2] << 2;
-      m_node = m_node.child(i);
-      m_nodeCell = m_nodeCell.child(i);
-      return true;
-    }
-    return false;
+    if (m_nodeCell.depth == 0 && !boundsOf(m_nodeCell).contains(b)) return false;
+    if ((low != high).any()) return false;
+    const int i = low[0] | low[1] << 1 | low[2] << 2;
+    m_node = m_node.child(i);
+    m_nodeCell = m_nodeCell.child(i);
+    return true;
   }
 
   /** Bounds of the cube in the old map; a voxel counts as its center. */

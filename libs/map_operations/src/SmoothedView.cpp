@@ -1,5 +1,6 @@
 #include <map_operations/SmoothedView.h>
 #include <semantic_octree/Keys.h>
+#include <semantic_octree/store/CalibrationFit.h>
 
 #include <algorithm>
 #include <cmath>
@@ -109,14 +110,11 @@ double SmoothedView::repeatedInMap() const {
     own += stated(alone, 0)[alone.own.ids[0] - 1];
     asked.push_back(listen(voxel, m_options.neighborWeight));
   }
-  double least = 0, most = 1;
-  for (int halving = 0; halving < kHalvings; ++halving) {
-    const double middle = (least + most) / 2;
-    double together = 0;
-    for (const Heard& heard : asked) together += stated(heard, middle)[heard.own.ids[0] - 1];
-    (together > own ? least : most) = middle;
-  }
-  return (least + most) / 2;
+  return shareWithoutGain(kHalvings, [&](double repeated) {
+    double gain = -own;
+    for (const Heard& heard : asked) gain += stated(heard, repeated)[heard.own.ids[0] - 1];
+    return gain;
+  });
 }
 
 CellState SmoothedView::query(const octomap::OcTreeKey& key) const {

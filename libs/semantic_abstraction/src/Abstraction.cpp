@@ -77,17 +77,15 @@ struct Asked {
   double stated;             ///< of it
 };
 
-/** Who learns more believes, in the mean, what was believed before: so what voxels state of their
- * own classes stays, in the mean, when they hear their cells. \return trust */
+/** What voxels state of their own classes stays, in the mean, when they hear their cells. The more
+ * these are trusted, the more it becomes. \return trust */
 double trustIn(const std::vector<Asked>& asked) {
-  double least = 0, most = 1;
-  for (int halving = 0; halving < kHalvings; ++halving) {
-    const double middle = (least + most) / 2;
+  const double doubt = shareWithoutGain(kHalvings, [&](double share) {
     double gain = 0;
-    for (const Asked& a : asked) gain += a.together(middle)[a.likeliest] - a.stated;
-    (gain < 0 ? least : most) = middle;
-  }
-  return (least + most) / 2;
+    for (const Asked& a : asked) gain += a.together(1 - share)[a.likeliest] - a.stated;
+    return gain;
+  });
+  return 1 - doubt;
 }
 
 /** Mixtures state too little: voxels of a cell err in different ways, so that the class of most of

@@ -30,6 +30,19 @@ inline double exactLogarithm(double x) {
   return 2 * z * sum + kLn075 + power * kLn2;
 }
 
+/** Who learns more believes, in the mean, what was believed before. \param gain what the mean gains
+ * if what is learned counts by a share, over which it falls \return the share that gains nothing,
+ * [0, 1], to 2^-halvings */
+template <typename Gain>
+double shareWithoutGain(int halvings, const Gain& gain) {
+  double least = 0, most = 1;
+  for (; halvings > 0; --halvings) {
+    const double middle = (least + most) / 2;
+    (gain(middle) > 0 ? least : most) = middle;
+  }
+  return (least + most) / 2;
+}
+
 /** Finds the Calibration of beliefs from what they are about. Only additions, multiplications and
  * divisions are made: results are the same bits everywhere. */
 class CalibrationFit {
