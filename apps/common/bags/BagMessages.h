@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "point_fields/ImageFields.h"
 #include "point_fields/PointFields.h"
 
 namespace bags {
