@@ -1,20 +1,186 @@
 #include "Application.h"
 
-#include <strict_files/Words.h>
+#include <strict_files/OutputFiles.h>
+#include <strict_files/TextFile.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <regex>
+#include <set>
+#include <stdexcept>
 #include <utility>
 
-#include "Signals.h"
-#include "StandardOutput.h"
+namespace {
+
+template <class Json>
+std::string dumped(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string camelCase(const std::string& name) {
+  std::string word;
+  for (std::size_t i = 0; i < name.size(); ++i)
+    if (name[i] == '_' && i + 1 < name.size())
+      word += static_cast<char>(std::toupper(static_cast<unsigned char>(name[++i])));
+    else
+      word += name[i];
+  return word;
+}
+
+}  // namespace
+
+nlohmann::ordered_json jsonOf(const strict_files::OptionList& options) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const strict_files::Option& option : options.options()) {
+    const std::string text = option.text();
+    const auto value = nlohmann::ordered_json::parse(text, nullptr, false);
+    const bool isText = !value.is_number() && !value.is_boolean();
+    json[camelCase(option.name)] = isText ? nlohmann::ordered_json(text) : value;
+  }
+  return json;
+}
+
+std::string textOf(const nlohmann::json& json) { return dumped(json); }
+std::string textOf(const nlohmann::ordered_json& json) { return dumped(json); }
+
+void writeJson(const std::filesystem::path& file, const nlohmann::json& json) {
+  strict_files::writeText(file, dumped(json));
+}
+void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+  strict_files::writeText(file, dumped(json));
+}
+
+namespace fs = std::filesystem;
+
+CLI::Option* Outputs::add(CLI::App& app, fs::path& output, const std::string& type,
+                          const std::string& what) {
+  return finish(app, app.add_option("-o,--output", output, what)->type_name(type));
+}
+
+CLI::Option* Outputs::add(CLI::App& app, std::vector<fs::path>& outputs, const std::string& type,
+                          const std::string& what) {
+  return finish(
+      app, app.add_option("-o,--output", outputs, what)->type_name(type)->allow_extra_args(false));
+}
+
+CLI::Option* Outputs::finish(CLI::App& app, CLI::Option* option) {
+  app.add_flag("-f,--overwrite", m_overwrite, "Write over what is there");
+  app.add_flag_callback("-q,--quiet", beQuiet, "Say nothing but errors");
+  addOther(option);
+  return option;
+}
+
+void Outputs::check(const std::vector<fs::path>& files, const std::vector<fs::path>& more) const {
+  std::vector<fs::path> inputs = more;
+  for (const CLI::Option* option : optionsOf(m_app))
+    if (std::find(m_options.begin(), m_options.end(), option) == m_options.end())
+      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+  std::error_code error;
+  std::set<fs::path> seen;
+  for (const fs::path& file : files) {
+    if (!file.empty() && !seen.insert(file.lexically_normal()).second)
+      throw std::runtime_error(file.string() + ": would be written twice");
+    if (!m_overwrite && !file.empty()) strict_files::declareNew(file);
+    if (!fs::exists(fs::symlink_status(file, error))) continue;
+    for (const fs::path& input : inputs)
+      if (fs::equivalent(file, input, error))
+        throw std::runtime_error(file.string() + ": is an input, and never written over");
+    if (!m_overwrite)
+      throw std::runtime_error(file.string() + ": is there already; -f (--overwrite) replaces it");
+  }
+}
+
+void Outputs::checkFolder(const fs::path& folder, const std::vector<std::string>& names,
+                          const std::vector<fs::path>& more) const {
+  std::vector<fs::path> files;
+  if (folder.empty()) return;
+  for (const std::string& name : names) files.push_back(folder / name);
+  check(files, more);
+}
+
+namespace {
+
+std::string withDashes(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+const std::string kOneOf = "one of ";
+
+bool isChoice(const strict_files::Option& option) { return option.expected.rfind(kOneOf, 0) == 0; }
+
+std::string helpOf(const strict_files::Option& option) {
+  if (isChoice(option)) return option.help;
+  const std::string unit = option.unit.empty() ? "" : ", " + option.unit;
+  return option.help + unit + " (" + option.expected + ")";
+}
+
+/** "{compressed,halton}", as addWords() has it. */
+std::string typeOf(const strict_files::Option& option) {
+  if (!isChoice(option)) return "VALUE";
+  std::string words;
+  for (const char c : option.expected.substr(kOneOf.size()))
+    if (c != ' ') words += c;
+  return "{" + words + "}";
+}
+
+void addSwitch(CLI::App& app, const strict_files::Option& option, const std::string& group) {
+  const bool on = option.text() == "true";
+  const std::string name = withDashes(option.name);
+  app.add_flag_callback((on ? "--no-" : "--") + name,
+                        [set = option.set, on] { set(on ? "false" : "true"); },
+                        (on ? "switches off: " : "") + option.help)
+      ->group(group);
+}
+
+}  // namespace
+
+void addOptions(CLI::App& app, const strict_files::OptionList& list, const std::string& group) {
+  for (const strict_files::Option& option : list.options()) {
+    if (option.isSwitch) {
+      addSwitch(app, option, group);
+      continue;
+    }
+    const std::string flag = "--" + withDashes(option.name);
+    const auto read = [set = option.set, flag](const std::vector<std::string>& words) {
+      try {
+        set(words.back());
+      } catch (const std::invalid_argument& e) {
+        throw CLI::ValidationError(flag + " " + e.what());
+      }
+      return true;
+    };
+    app.add_option(flag, read, helpOf(option))
+        ->type_name(typeOf(option))
+        ->default_str(option.text())
+        ->group(group);
+  }
+}
+
+CLI::Validator isNumber(const strict_files::Range& range) {
+  const auto number = std::make_shared<double>();
+  strict_files::OptionList list;
+  list.add("number", *number, "", range, "");
+  const auto check = [number, option = list.options().front()](const std::string& text) {
+    try {
+      option.set(text);
+      return std::string();
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+  };
+  const bool bounded = std::isfinite(range.low) && std::isfinite(range.high);
+  const std::string words =
+      strict_files::textOf(range.low) + " to " + strict_files::textOf(range.high);
+  return CLI::Validator(check, bounded ? words : "");
+}
 
 namespace {
 

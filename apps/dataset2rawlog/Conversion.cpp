@@ -4,7 +4,6 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservationRobotPose.h>
-#include <semantic_types/ClassTable.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>

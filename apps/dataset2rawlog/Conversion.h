@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "Signals.h"
-#include "StandardOutput.h"
+#include "Terminal.h"
 #include "label_noise/LabelNoise.h"
 
 namespace dataset2rawlog {

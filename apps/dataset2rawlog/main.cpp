@@ -4,8 +4,6 @@
 
 #include "Application.h"
 #include "Conversion.h"
-#include "Outputs.h"
-#include "StandardOutput.h"
 
 namespace {
 

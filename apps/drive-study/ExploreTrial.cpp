@@ -240,13 +240,6 @@ class Glide {
 
 }  // namespace
 
-const strict_files::Choices<Exploring>& choicesOf(Exploring) {
-  static const strict_files::Choices<Exploring> choices = {{"frontier", Exploring::Frontier},
-                                                           {"plain", Exploring::Plain},
-                                                           {"relevant", Exploring::Relevant}};
-  return choices;
-}
-
 double ExploreTrial::metersTo(double share) const {
   for (const KnownShare& k : known)
     if (k.share >= share) return k.meters;

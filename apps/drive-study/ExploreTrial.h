@@ -13,7 +13,11 @@ namespace drive_study {
 /** How places to look from are chosen: the nearest border of what is known; information of all
  * classes, of which unknown space has all alike; of what weights ask for, by a learned prior. */
 enum class Exploring { Frontier, Plain, Relevant };
-const strict_files::Choices<Exploring>& choicesOf(Exploring);
+inline strict_files::Choices<Exploring> choicesOf(Exploring) {
+  return {{"frontier", Exploring::Frontier},
+          {"plain", Exploring::Plain},
+          {"relevant", Exploring::Relevant}};
+}
 
 /** What is looked for: the weights, and the ground that is to be known in the end. */
 struct ExploreTask {

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "measuring/Measuring.h"
-#include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {
 

@@ -11,10 +11,6 @@
 
 #include "Application.h"
 #include "ExploreTrial.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "Signals.h"
-#include "StandardOutput.h"
 #include "Trial.h"
 
 namespace drive_study {
@@ -56,9 +52,7 @@ struct Cli {
         ->type_name("NAME")
         ->needs(file);
     app.add_option("--scene-seed", sceneSeed, "Seed of the worlds")->capture_default_str();
-    strict_files::OptionList pairsDrawn;
-    tasks.describe(pairsDrawn);
-    addOptions(app, pairsDrawn, "Start and goal");
+    addOptions(app, strict_files::OptionList::of(tasks), "Start and goal");
     app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
     app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
         ->required();

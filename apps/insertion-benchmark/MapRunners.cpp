@@ -93,26 +93,6 @@ class MrptRunner : public Runner {
   std::vector<mrpt::poses::CPose3D> m_poses;
 };
 
-}  // namespace
-
-std::unique_ptr<Runner> octomapOcTree(const Scene& scene, const Settings& settings) {
-  return std::make_unique<OctomapRunner<octomap::OcTree>>(scene, settings, false);
-}
-
-std::unique_ptr<Runner> octomapDiscretized(const Scene& scene, const Settings& settings) {
-  return std::make_unique<OctomapRunner<octomap::OcTree>>(scene, settings, true);
-}
-
-std::unique_ptr<Runner> octomapColorOcTree(const Scene& scene, const Settings& settings) {
-  return std::make_unique<ColorRunner>(scene, settings, false);
-}
-
-std::unique_ptr<Runner> mrptOctoMap(const Scene& scene, const Settings& settings) {
-  return std::make_unique<MrptRunner>(scene, settings);
-}
-
-namespace {
-
 using semantic_octree::SemanticOcTree;
 
 class OurRunner : public Runner {
@@ -150,19 +130,6 @@ class OurRunner : public Runner {
   SemanticOcTree m_map;
   semantic_octree::InsertionOptions m_options;
 };
-
-}  // namespace
-
-std::unique_ptr<Runner> semanticOcTree(const Scene& scene, const Settings& settings) {
-  return std::make_unique<OurRunner>(scene, settings, false);
-}
-
-std::unique_ptr<Runner> semanticOcTreeWithAbstraction(const Scene& scene,
-                                                      const Settings& settings) {
-  return std::make_unique<OurRunner>(scene, settings, true);
-}
-
-namespace {
 
 /** The bare work of following all beams: an incremental traversal (Amanatides and Woo) that counts
  * in one byte per voxel of a dense array, in single precision and with the beams' ends known. */
@@ -269,10 +236,23 @@ class DenseTraversal : public Runner {
   std::vector<std::uint8_t> m_counts;
 };
 
+template <class R, bool... more>
+std::unique_ptr<Runner> make(const Scene& scene, const Settings& settings) {
+  return std::make_unique<R>(scene, settings, more...);
+}
+
 }  // namespace
 
-std::unique_ptr<Runner> denseTraversal(const Scene& scene, const Settings& settings) {
-  return std::make_unique<DenseTraversal>(scene, settings);
+const std::vector<std::pair<std::string, MakeRunner>>& runners() {
+  static const std::vector<std::pair<std::string, MakeRunner>> runners = {
+      {kTraversal, make<DenseTraversal>},
+      {"semantic_octree", make<OurRunner, false>},
+      {kReference, make<OurRunner, true>},
+      {"octomap::OcTree", make<OctomapRunner<octomap::OcTree>, false>},
+      {"octomap::OcTree, discretized", make<OctomapRunner<octomap::OcTree>, true>},
+      {"octomap::ColorOcTree", make<ColorRunner, false>},
+      {"mrpt::maps::COctoMap", make<MrptRunner>}};
+  return runners;
 }
 
 }  // namespace insertion_benchmark

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace insertion_benchmark {
@@ -38,13 +40,11 @@ class Runner {
 
 using MakeRunner = std::unique_ptr<Runner> (*)(const Scene& scene, const Settings& settings);
 
+constexpr const char* kReference = "semantic_octree with G";
 /** A byte array that beams are traced through: each voxel on the way is touched, nothing more. */
-std::unique_ptr<Runner> denseTraversal(const Scene& scene, const Settings& settings);
-std::unique_ptr<Runner> semanticOcTree(const Scene& scene, const Settings& settings);
-std::unique_ptr<Runner> semanticOcTreeWithAbstraction(const Scene& scene, const Settings& settings);
-std::unique_ptr<Runner> octomapOcTree(const Scene& scene, const Settings& settings);
-std::unique_ptr<Runner> octomapDiscretized(const Scene& scene, const Settings& settings);
-std::unique_ptr<Runner> octomapColorOcTree(const Scene& scene, const Settings& settings);
-std::unique_ptr<Runner> mrptOctoMap(const Scene& scene, const Settings& settings);
+constexpr const char* kTraversal = "bare traversal of all rays";
+
+/** All of them, by name. */
+const std::vector<std::pair<std::string, MakeRunner>>& runners();
 
 }  // namespace insertion_benchmark

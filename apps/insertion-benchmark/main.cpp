@@ -15,7 +15,6 @@
 #include <stdexcept>
 
 #include "Application.h"
-#include "Options.h"
 #include "Runner.h"
 #include "measuring/Measuring.h"
 
@@ -23,21 +22,6 @@ namespace insertion_benchmark {
 namespace {
 
 using semantic_octree::InsertionOptions;
-
-const std::string kReference = "semantic_octree with G";
-const std::string kTraversal = "bare traversal of all rays";
-
-const std::vector<std::pair<std::string, MakeRunner>>& runners() {
-  static const std::vector<std::pair<std::string, MakeRunner>> runners = {
-      {kTraversal, denseTraversal},
-      {"semantic_octree", semanticOcTree},
-      {kReference, semanticOcTreeWithAbstraction},
-      {"octomap::OcTree", octomapOcTree},
-      {"octomap::OcTree, discretized", octomapDiscretized},
-      {"octomap::ColorOcTree", octomapColorOcTree},
-      {"mrpt::maps::COctoMap", mrptOctoMap}};
-  return runners;
-}
 
 struct Cli {
   std::filesystem::path rawlog, classes;

@@ -13,9 +13,6 @@
 #include <stdexcept>
 
 #include "Application.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "Signals.h"
 #include "measuring/Measuring.h"
 
 namespace planning_study {

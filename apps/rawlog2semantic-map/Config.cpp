@@ -1,22 +1,113 @@
 #include "Config.h"
 
 #include <labeled_cloud/NetworkLabeler.h>
+#include <labeled_cloud/Rawlogs.h>
 #include <mrpt/config/CConfigFile.h>
+#include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationImage.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationRobotPose.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/TextFile.h>
-#include <strict_files/Words.h>
 
-#include <fstream>
+#include <cmath>
 #include <map>
+#include <set>
+#include <sstream>
 #include <stdexcept>
+
+#include "poses/Poses.h"
 
 namespace rawlog2semantic_map {
 
 namespace fs = std::filesystem;
+using labeled_cloud::Trajectory;
+using strict_files::TextLine;
+
+namespace {
+
+/** What says where the robot is, or is a picture, is no scan. */
+bool isScan(const mrpt::obs::CObservation& o) {
+  return !IS_CLASS(o, mrpt::obs::CObservationRobotPose) &&
+         !IS_CLASS(o, mrpt::obs::CObservationOdometry) &&
+         !IS_CLASS(o, mrpt::obs::CObservationImage) && !IS_CLASS(o, mrpt::obs::CObservationIMU);
+}
+
+std::set<Trajectory::Time> timesOfScans(const std::vector<fs::path>& rawlogs) {
+  std::set<Trajectory::Time> times;
+  for (const fs::path& file : rawlogs) {
+    labeled_cloud::RawlogReader reader(file);
+    while (const auto entry = reader.next())
+      for (const auto& observation : entry->observations)
+        if (isScan(*observation)) times.insert(observation->timestamp);
+  }
+  return times;
+}
+
+bool hasMatrices(const std::vector<TextLine>& lines) {
+  if (lines.empty()) return false;
+  std::istringstream words(lines.front().text);
+  int count = 0;
+  for (std::string word; words >> word;) ++count;
+  return count == 12;
+}
+
+/** KITTI's own poses are those of a camera, which looks along z. */
+void checkForward(const std::vector<mrpt::poses::CPose3D>& poses, const fs::path& file) {
+  mrpt::math::TPoint3D way;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const mrpt::poses::CPose3D step = poses[i] - poses[i - 1];
+    way += mrpt::math::TPoint3D(step.x(), step.y(), step.z());
+  }
+  if (std::abs(way.z) > std::abs(way.x) + std::abs(way.y))
+    throw std::runtime_error(
+        file.string() +
+        ": these are poses of a camera (they move along their z axes), expected those of the "
+        "robot, with x forward; dataset2rawlog semantic-kitti turns KITTI's own");
+}
+
+}  // namespace
+
+Trajectory restAtOrigin() {
+  labeled_cloud::TrajectoryOptions always;
+  always.tolerance = HUGE_VAL;
+  Trajectory trajectory(always);
+  trajectory.insert({}, {});
+  return trajectory;
+}
+
+Trajectory loadTrajectory(const fs::path& file, const std::vector<fs::path>& rawlogs) {
+  const std::vector<TextLine> lines = strict_files::readLines(file);
+  if (!hasMatrices(lines)) return labeled_cloud::loadTumTrajectory(file);
+  std::vector<mrpt::poses::CPose3D> read;
+  for (const TextLine& line : lines)
+    read.emplace_back(mrpt::math::CMatrixDouble44(poses::poseOfMatrix(line).matrix()));
+  checkForward(read, file);
+  const std::set<Trajectory::Time> times = timesOfScans(rawlogs);
+  if (read.size() != times.size())
+    throw std::runtime_error(file.string() + ": " + std::to_string(read.size()) + " poses for " +
+                             std::to_string(times.size()) + " scans");
+  Trajectory trajectory;
+  auto time = times.begin();
+  for (const mrpt::poses::CPose3D& pose : read) trajectory.insert(*time++, pose);
+  return trajectory;
+}
+
+Trajectory ownTrajectory(const std::vector<fs::path>& rawlogs, bool isNeeded) {
+  Trajectory found = labeled_cloud::findTrajectory(rawlogs);
+  if (found.empty() && isNeeded)
+    throw std::runtime_error(rawlogs.front().string() +
+                             ": no robot poses (CObservationRobotPose, movements, or "
+                             "CObservationOdometry); give --trajectory or --slam, or --static-pose "
+                             "if the robot stood still");
+  return found;
+}
+
+namespace fs = std::filesystem;
 using labeled_cloud::ScanStreamOptions;
-using mrpt::config::CConfigFileBase;
-using strict_files::IniSection;
+using mrpt::config::CConfigFile;
 using strict_files::OptionList;
+using strict_files::readOptions;
 using strict_files::readSection;
 
 namespace {
@@ -25,43 +116,16 @@ namespace {
 constexpr const char* kCameraSections = "camera *";
 
 /** The label model is known by [labels]. */
-void readInsertion(const CConfigFileBase& ini, semantic_map::TInsertionOptions& insertion) {
-  OptionList list, labels;
-  insertion.describe(list);
-  insertion.conversion.labels.describe(labels);
-  for (const std::string& name : labels.names()) list.remove(name);
-  IniSection section(ini, "insertion");
-  section.read(list);
-  section.finish();
+void readInsertion(const CConfigFile& ini, semantic_map::TInsertionOptions& insertion) {
+  OptionList list = OptionList::of(insertion);
+  for (const auto& name : OptionList::of(insertion.conversion.labels).names()) list.remove(name);
+  readOptions(ini, "insertion", list);
   insertion.validate();
 }
 
-void readPictures(const CConfigFileBase& ini, Config& config) {
-  OptionList list;
-  config.pictures.describe(list);
-  config.view.describe(list);
-  IniSection section(ini, "pictures");
-  section.read(list);
-  section.finish();
-}
-
-void readLabels(const CConfigFileBase& ini, Config& config) {
-  OptionList list;
-  config.labels.describe(list);
-  config.insertion.conversion.labels.describe(list);
-  config.stream.describe(list);
-  IniSection section(ini, "labels");
-  section.read(list);
-  section.finish();
-}
-
-labeled_cloud::CameraCalibration readCamera(const CConfigFileBase& ini, const std::string& name) {
+labeled_cloud::CameraCalibration readCamera(const CConfigFile& ini, const std::string& name) {
   labeled_cloud::CameraDescription camera;
-  OptionList list;
-  camera.describe(list);
-  IniSection section(ini, name);
-  section.read(list);
-  section.finish();
+  const auto section = readOptions(ini, name, OptionList::of(camera));
   try {
     return camera.calibration();
   } catch (const std::invalid_argument& e) {
@@ -69,49 +133,36 @@ labeled_cloud::CameraCalibration readCamera(const CConfigFileBase& ini, const st
   }
 }
 
-void readCameras(const CConfigFileBase& ini, Config& config) {
-  strict_files::readSection(ini, "cameras", config.cameras);
+void readCameras(const CConfigFile& ini, Config& config) {
+  readSection(ini, "cameras", config.cameras);
   const std::string prefix = std::string(kCameraSections, std::string(kCameraSections).size() - 1);
   std::vector<std::string> names;
   ini.getAllSections(names);
   for (const std::string& name : names)
     if (name.rfind(prefix, 0) == 0)
       config.cameras.calibrations[name.substr(prefix.size())] = readCamera(ini, name);
-}
-
-void readLabelConfig(const CConfigFileBase& ini, Config& config) {
-  readLabels(ini, config);
-  readCameras(ini, config);
   config.cameras.skipProblems = config.stream.onProblem == ScanStreamOptions::OnProblem::Skip;
-}
-
-Config readConfig(const fs::path& file) {
-  Config config;
-  strict_files::checkIniText(strict_files::readText(file));
-  const mrpt::config::CConfigFile ini(file.string());
-  strict_files::checkSections(ini, {"map", "insertion", "abstraction", "labels", "cameras",
-                                    kCameraSections, "slam", "pictures"});
-  readSection(ini, "map", config.map);
-  readInsertion(ini, config.insertion);
-  readSection(ini, "abstraction", config.abstraction);
-  readLabelConfig(ini, config);
-  readSection(ini, "slam", config.slam);
-  readPictures(ini, config);
-  if (!config.map.classes.empty())
-    config.map.classes = (file.parent_path() / config.map.classes).lexically_normal();
-  return config;
 }
 
 }  // namespace
 
 Config loadConfig(const fs::path& file) {
-  if (!fs::is_regular_file(file) || !std::ifstream(file))
-    throw std::runtime_error(file.string() + ": cannot be read");
-  try {
-    return readConfig(file);
-  } catch (const std::exception& e) {
-    throw std::runtime_error(file.string() + ": " + strict_files::messageOf(e));
-  }
+  Config config;
+  strict_files::readIniFile<CConfigFile>(file, [&](const CConfigFile& ini) {
+    strict_files::checkSections(ini, {"map", "insertion", "abstraction", "labels", "cameras",
+                                      kCameraSections, "slam", "pictures"});
+    readSection(ini, "map", config.map);
+    readInsertion(ini, config.insertion);
+    readSection(ini, "abstraction", config.abstraction);
+    readOptions(ini, "labels",
+                OptionList::of(config.labels, config.insertion.conversion.labels, config.stream));
+    readCameras(ini, config);
+    readSection(ini, "slam", config.slam);
+    readOptions(ini, "pictures", OptionList::of(config.pictures, config.view));
+  });
+  if (!config.map.classes.empty())
+    config.map.classes = (file.parent_path() / config.map.classes).lexically_normal();
+  return config;
 }
 
 using labeled_cloud::ImageLabeler;

@@ -2,6 +2,7 @@
 #include <labeled_cloud/CloudLabeler.h>
 #include <labeled_cloud/LabelImage.h>
 #include <labeled_cloud/ScanStream.h>
+#include <labeled_cloud/Trajectory.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_slam/SlamOptions.h>
@@ -12,6 +13,21 @@
 #include <vector>
 
 namespace rawlog2semantic_map {
+
+/** Holds at all times. */
+labeled_cloud::Trajectory restAtOrigin();
+
+/** Poses of a file: in the TUM format (see labeled_cloud::loadTumTrajectory()), or in KITTI's, 3x4
+ * matrices [R|t] in rows of twelve numbers, T_map_robot at each of the rawlogs' scans in the order
+ * of their times.
+ * \throw std::runtime_error naming the file, and the line: it is neither, or has another number of
+ * poses than there are scans. */
+labeled_cloud::Trajectory loadTrajectory(const std::filesystem::path& file,
+                                         const std::vector<std::filesystem::path>& rawlogs);
+
+/** The rawlogs' own poses; empty: there are none. \throw std::runtime_error as RawlogReader */
+labeled_cloud::Trajectory ownTrajectory(const std::vector<std::filesystem::path>& rawlogs,
+                                        bool isNeeded);
 
 /** What the .ini file says: one member a section. */
 struct Config {

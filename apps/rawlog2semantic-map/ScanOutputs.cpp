@@ -126,9 +126,9 @@ std::vector<std::string> lines(const LabeledScan& scan, const Summary& summary,
 
 LiveScans::LiveScans(const semantic_octree::SemanticOcTree& map, const StopRequest& stop,
                      bool paused)
-    : m_map(map), m_window("rawlog2semantic-map", map) {
-  m_window.stopWhen([&stop] { return stop.pending(); });
-  if (paused) m_window.pause();
+    : m_map(map), m_window(map_window::LiveMap::open("rawlog2semantic-map", map)) {
+  m_window->stopWhen([&stop] { return stop.pending(); });
+  if (paused) m_window->pause();
 }
 
 void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,
@@ -144,15 +144,15 @@ void LiveScans::show(const LabeledScan& scan, const mrpt::poses::CPose3D& T_map_
     if (!ofClass) ofClass = pointsOf(id, m_map.classes());
     ofClass->insertPoint(float(place.x()), float(place.y()), float(place.z()));
   }
-  m_window.marks().clear();
-  for (const auto& [id, ofClass] : points) m_window.marks().insert(ofClass);
+  m_window->marks().clear();
+  for (const auto& [id, ofClass] : points) m_window->marks().insert(ofClass);
   if (!scan.pictures.empty()) {
     const labeled_cloud::LabeledPicture& picture = scan.pictures.front();
-    m_window.showPicture(label_overlay::labeledImage(picture, m_map.classes()));
+    m_window->showPicture(label_overlay::labeledImage(picture, m_map.classes()));
   }
-  m_window.changed(seen);
-  m_window.say(lines(scan, summary, m_map));
-  m_window.show(0);
+  m_window->changed(seen);
+  m_window->say(lines(scan, summary, m_map));
+  m_window->show(0);
 }
 
 }  // namespace rawlog2semantic_map

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "Signals.h"
-#include "Summary.h"
+#include "MapBuilder.h"
+#include "Terminal.h"
 #include "map_window/LiveMap.h"
 
 namespace rawlog2semantic_map {
@@ -60,11 +60,11 @@ class LiveScans {
   void show(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot,
             const Summary& summary);
   /** Until the window is closed. */
-  void stay() { m_window.stay(); }
+  void stay() { m_window->stay(); }
 
  private:
   const semantic_octree::SemanticOcTree& m_map;
-  map_window::LiveMap m_window;
+  std::unique_ptr<map_window::LiveMap> m_window;
 };
 
 }  // namespace rawlog2semantic_map

@@ -13,14 +13,8 @@
 
 #include "Application.h"
 #include "Config.h"
-#include "JsonFile.h"
 #include "MapBuilder.h"
-#include "Options.h"
-#include "Outputs.h"
 #include "ScanOutputs.h"
-#include "Signals.h"
-#include "StandardOutput.h"
-#include "Trajectories.h"
 #include "inputs/Inputs.h"
 
 namespace rawlog2semantic_map {
@@ -98,9 +92,7 @@ struct Cli {
   }
 
   CLI::Option* addTilesTo(CLI::App& app) {
-    strict_files::OptionList list;
-    folder.tiles.describe(list);
-    addOptions(app, list, "Maps larger than memory");
+    addOptions(app, strict_files::OptionList::of(folder.tiles), "Maps larger than memory");
     return app
         .add_option("--tiles", folder.folder,
                     "Folder of tiles for the map, added to what is there; "

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "JsonFile.h"
+#include "Application.h"
 #include "figures/FigureScript.h"
 
 namespace semantic_map_compress {

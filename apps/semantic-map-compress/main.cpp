@@ -13,11 +13,7 @@
 #include <utility>
 
 #include "Application.h"
-#include "JsonFile.h"
-#include "Options.h"
-#include "Outputs.h"
 #include "Report.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 
 namespace semantic_map_compress {

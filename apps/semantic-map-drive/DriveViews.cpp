@@ -262,7 +262,8 @@ CCylinder::Ptr postAt(const TPoint3D& place) {
 LiveWindow::LiveWindow(const DriveLoop& loop, const synthetic_world::World& world,
                        const TPose2D& start, const TPose2D& goal)
     : m_goal(goal.x, goal.y, world.groundHeight(goal.x, goal.y)),
-      m_window("semantic-map-drive", loop.mapper().map(), beginningFor(world, start, goal)) {}
+      m_window(map_window::LiveMap::open("semantic-map-drive", loop.mapper().map(),
+                                         beginningFor(world, start, goal))) {}
 
 void LiveWindow::onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) {
   const Eigen::Isometry3d T_map_robot = loop.T_world_robot();
@@ -270,15 +271,15 @@ void LiveWindow::onSensed(const DriveLoop& loop, const std::vector<Observation>&
   for (const Observation& o : seen)
     for (const auto& p : o.cloud.points)
       box.extend(T_map_robot * o.T_robot_sensor * p.cast<double>());
-  m_window.changed(box);
+  m_window->changed(box);
   for (const Observation& o : seen)
     if (const auto picture = pictureOf(o, loop.mapper().map().classes()))
-      m_window.showPicture(*picture);
+      m_window->showPicture(*picture);
 }
 
 void LiveWindow::onDriven(const DriveLoop& loop) {
-  if (!m_window.isOpen()) return;
-  auto& marks = m_window.marks();
+  if (!m_window->isOpen()) return;
+  auto& marks = m_window->marks();
   marks.clear();
   marks.insert(postAt(m_goal));
   marks.insert(trackOf(loop));
@@ -286,12 +287,12 @@ void LiveWindow::onDriven(const DriveLoop& loop) {
   marks.insert(robotOf(loop));
   std::vector<std::string> lines = stageTimes(loop.record());
   lines.insert(lines.begin(), caption(loop));
-  m_window.say(lines);
+  m_window->say(lines);
   using std::chrono::duration, std::chrono::steady_clock;
   m_due += std::chrono::duration_cast<steady_clock::duration>(
       duration<double>(loop.config().controlPeriod));
   m_due = std::max(m_due, steady_clock::now());
-  m_window.show(duration<double>(m_due - steady_clock::now()).count());
+  m_window->show(duration<double>(m_due - steady_clock::now()).count());
 }
 
 }  // namespace semantic_map_drive

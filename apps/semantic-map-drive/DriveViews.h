@@ -53,15 +53,15 @@ class LiveWindow : public DriveObserver {
   LiveWindow(const DriveLoop& loop, const synthetic_world::World& world,
              const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal);
 
-  void stopWhen(const std::function<bool()>& isToEnd) { m_window.stopWhen(isToEnd); }
+  void stopWhen(const std::function<bool()>& isToEnd) { m_window->stopWhen(isToEnd); }
   /** Until the window is closed. */
-  void stay() { m_window.stay(); }
+  void stay() { m_window->stay(); }
   void onSensed(const DriveLoop& loop, const std::vector<Observation>& seen) override;
   void onDriven(const DriveLoop& loop) override;
 
  private:
   mrpt::math::TPoint3D m_goal;
-  map_window::LiveMap m_window;
+  std::unique_ptr<map_window::LiveMap> m_window;
   std::chrono::steady_clock::time_point m_due;
 };
 

@@ -1,7 +1,6 @@
 // Drives a robot through a synthetic world: it maps, compresses, plans and drives.
 #include <map_folders/MapFolder.h>
 #include <map_pictures/PictureFiles.h>
-#include <mrpt/core/format.h>
 #include <mrpt/math/TPose2D.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_octree/TreeFile.h>
@@ -13,7 +12,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
@@ -22,15 +20,9 @@
 
 #include "Application.h"
 #include "DriveViews.h"
-#include "JsonFile.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "Signals.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 #include "poses/Poses.h"
 #include "simulated_drive/DriveLoop.h"
-#include "simulated_drive/Events.h"
 #include "synthetic_rawlog/Observations.h"
 
 namespace semantic_map_drive {
@@ -47,8 +39,7 @@ struct Cli {
   std::vector<std::filesystem::path> order;
   std::string scene = "village";
   std::uint64_t seed = 1;
-  double hills = 1, pictureEvery = 0;
-  double memory = semantic_octree::MapFolderOptions().memory;
+  double hills = 1, memory = semantic_octree::MapFolderOptions().memory;
   mrpt::math::TPose2D start, goal;
   bool rawlog = true, pictures = true, navlog = false, live = false;
   bool explore = false;
@@ -110,9 +101,6 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       ->required();
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   addEvents(app);
-  app.add_option("--picture-every", pictureEvery,
-                 "Write a picture every so many seconds of the drive")
-      ->check(isNumber(strict_files::above(0)));
   app.add_flag("!--no-rawlog", rawlog, "Write no rawlog");
   app.add_flag("--navlog", navlog, "Write drive.reactivenavlog, for MRPT's navlog-viewer");
   app.add_flag("--live", live,
@@ -151,26 +139,28 @@ class Recorder : public DriveObserver {
   synthetic_rawlog::DriveLog m_log;
 };
 
-/** Takes pictures along the way, and one at the end. */
+/** A picture of each second of the drive, and one of its end. */
 class Animation : public DriveObserver {
  public:
-  /** \param period s of the drive between pictures \param show gets each of them, BGR */
-  Animation(DrivePicture picture, double period, std::function<void(const cv::Mat&)> show)
-      : m_picture(std::move(picture)), m_period(period), m_show(std::move(show)) {}
+  Animation(const DrivePicture& picture, const fs::path& file)
+      : m_picture(picture), m_gif(file, 0.12) {}
 
   void onSensed(const DriveLoop& loop, const std::vector<Observation>&) override {
     if (loop.time() < m_next - 1e-6) return;
-    m_next += m_period;
+    m_next += 1;
     shoot(loop);
   }
-  void onFinished(const DriveLoop& loop) override { shoot(loop); }
+  void onFinished(const DriveLoop& loop) override {
+    shoot(loop);
+    m_gif.close();
+  }
 
  private:
-  void shoot(const DriveLoop& loop) { m_show(m_picture.frame(loop)); }
+  void shoot(const DriveLoop& loop) { m_gif.add(m_picture.frame(loop)); }
 
-  DrivePicture m_picture;
-  double m_period, m_next = 0;
-  std::function<void(const cv::Mat&)> m_show;
+  const DrivePicture& m_picture;
+  map_pictures::GifFile m_gif;
+  double m_next = 0;  ///< s
 };
 
 constexpr int kNotArrived = 2;  // exit status
@@ -213,9 +203,7 @@ class DriveProgram {
       addOtherTrack(*m_last, first);
       map_pictures::savePicture(m_last->sheet("both drives"), m_output.staged("both.png"));
     }
-    std::vector<std::string> names = kFiles;
-    names.insert(names.end(), m_onTheWay.begin(), m_onTheWay.end());
-    m_output.commit(names);
+    m_output.commit(kFiles);
     if (m_window) m_window->stay();
     return first.arrived() || first.end == DriveEnd::Explored ? 0 : kNotArrived;
   }
@@ -249,18 +237,9 @@ class DriveProgram {
       loop.keepOriginals();
       loop.addObserver(recorder.emplace(m_output.staged("drive.rawlog")));
     }
-    std::optional<map_pictures::GifFile> gif;
-    std::optional<Animation> animation, onTheWay;
-    if (m_cli.pictures) {
-      gif.emplace(m_output.staged(name + ".gif"), 0.12);
-      const auto add = [&gif](const cv::Mat& picture) { gif->add(picture); };
-      loop.addObserver(animation.emplace(m_picture, 1, add));
-    }
-    std::size_t numOnTheWay = 0;
-    if (m_cli.pictureEvery > 0)
-      loop.addObserver(onTheWay.emplace(m_picture, m_cli.pictureEvery, [&](const cv::Mat& picture) {
-        map_pictures::savePicture(picture, m_output.staged(numbered(name, numOnTheWay++)));
-      }));
+    std::optional<Animation> animation;
+    if (m_cli.pictures)
+      loop.addObserver(animation.emplace(m_picture, m_output.staged(name + ".gif")));
     if (m_cli.live) {
       loop.keepOriginals();
       loop.addObserver(m_window.emplace(loop, m_scene.world, m_cli.start, goalOf(m_cli)));
@@ -277,22 +256,9 @@ class DriveProgram {
     m_last = m_whole.draw(loop);
     map_pictures::savePicture(map_pictures::withTitle(m_last->sheet(), caption(loop)),
                               m_output.staged(name + ".png"));
-    if (gif) gif->close();
-    listOnTheWay(name, numOnTheWay);
     printSummary(record);
     if (!m_window) m_loop.reset();
     return record;
-  }
-
-  /** drive-0000.png, drive-0001.png, ... */
-  static std::string numbered(const std::string& name, std::size_t i) {
-    return name + mrpt::format("-%04zu.png", i);
-  }
-
-  /** Pictures of this drive; and those of an earlier, longer one, which go. */
-  void listOnTheWay(const std::string& name, std::size_t count) {
-    for (std::size_t i = 0; i < count || fs::exists(m_cli.output / numbered(name, i)); ++i)
-      m_onTheWay.push_back(numbered(name, i));
   }
 
   static mrpt::math::TPose2D goalOf(const Cli& cli) { return cli.explore ? cli.start : cli.goal; }
@@ -302,9 +268,7 @@ class DriveProgram {
         .weights;
   }
   static const Cli& checked(const Cli& cli) {
-    std::vector<std::string> names = kFiles;
-    for (const char* name : {"drive", "drive2"}) names.push_back(numbered(name, 0));
-    cli.outputs.checkFolder(cli.output, names);
+    cli.outputs.checkFolder(cli.output, kFiles);
     if (cli.live && semantic_octree::MapFolder::isAt(cli.map))
       throw std::runtime_error("--live: a map in a folder of tiles is not shown");
     return cli;
@@ -321,7 +285,6 @@ class DriveProgram {
   std::optional<map_pictures::MapCanvas> m_last;
   std::optional<DriveLoop> m_loop;  ///< of the last drive, as long as the window shows it
   std::optional<LiveWindow> m_window;
-  std::vector<std::string> m_onTheWay;  ///< names of pictures
 };
 
 }  // namespace

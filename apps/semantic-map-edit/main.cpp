@@ -13,9 +13,6 @@
 #include <ostream>
 
 #include "Application.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 #include "poses/Poses.h"
 

@@ -17,10 +17,6 @@
 
 #include "Application.h"
 #include "Evaluation.h"
-#include "JsonFile.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "StandardOutput.h"
 #include "figures/FigureScript.h"
 #include "inputs/Inputs.h"
 
@@ -100,9 +96,7 @@ struct Cli {
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Leave out points farther from the sensor than this, m")
         ->check(isNumber(strict_files::above(0)));
-    strict_files::OptionList list;
-    smoothing.describe(list);
-    addOptions(app, list, "Neighbors");
+    addOptions(app, strict_files::OptionList::of(smoothing), "Neighbors");
     addMemoryOption(app, memory);
   }
 };

@@ -19,9 +19,6 @@
 
 #include "Application.h"
 #include "CostGrid.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 
 namespace semantic_map_export {
@@ -246,13 +243,10 @@ struct Cli {
     app.add_flag("--free", options.points.free, ".ply, .csv: free leaves, too");
     app.add_option("--max-height", options.maxHeight,
                    ".png, .3Dscene: nothing above this height, m");
-    strict_files::OptionList list;
-    options.points.smoothing.describe(list);
-    addOptions(app, list, "Classes that neighbors tell (.ply, .csv)");
+    addOptions(app, strict_files::OptionList::of(options.points.smoothing),
+               "Classes that neighbors tell (.ply, .csv)");
     const std::string kGrids = "2D grids (.gridmap, .yaml)";
-    strict_files::OptionList grid;
-    options.grid.describe(grid);
-    addOptions(app, grid, kGrids);
+    addOptions(app, strict_files::OptionList::of(options.grid), kGrids);
     app.add_option(
            "--ground", ground,
            "Class of the ground, may be given several times; without: the lowest voxel of each "

@@ -14,8 +14,6 @@
 #include <string>
 
 #include "Application.h"
-#include "JsonFile.h"
-#include "Options.h"
 #include "PointQuery.h"
 #include "inputs/Inputs.h"
 

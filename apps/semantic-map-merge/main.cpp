@@ -14,9 +14,6 @@
 
 #include "Application.h"
 #include "MapPoses.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 
 namespace semantic_map_merge {

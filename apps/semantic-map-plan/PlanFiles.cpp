@@ -5,7 +5,6 @@
 #include <semantic_map/MapFiles.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/roadmap/MrptGraph.h>
-#include <semantic_types/ClassTable.h>
 #include <strict_files/TextFile.h>
 
 #include <cmath>

@@ -22,11 +22,7 @@
 #include <utility>
 
 #include "Application.h"
-#include "JsonFile.h"
-#include "Options.h"
-#include "Outputs.h"
 #include "PlanFiles.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 #include "measuring/Measuring.h"
 #include "poses/Poses.h"
@@ -76,9 +72,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       ->check(isNumber(strict_files::above(0).orInfinite()));
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   planner.shorten = true;
-  strict_files::OptionList options;
-  planner.describe(options);
-  addOptions(app, options, "Planner");
+  addOptions(app, strict_files::OptionList::of(planner), "Planner");
 }
 
 constexpr int kNoPath = 2;  // exit status

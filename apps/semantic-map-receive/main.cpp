@@ -8,10 +8,6 @@
 #include <ostream>
 
 #include "Application.h"
-#include "Options.h"
-#include "Outputs.h"
-#include "Signals.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 #include "radio/Radio.h"
 

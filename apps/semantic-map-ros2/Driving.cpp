@@ -9,7 +9,7 @@
 #include <ostream>
 #include <utility>
 
-#include "StandardOutput.h"
+#include "Terminal.h"
 #include "measuring/Measuring.h"
 
 namespace semantic_map_ros2 {

@@ -8,7 +8,7 @@
 #include <iomanip>
 #include <ostream>
 
-#include "StandardOutput.h"
+#include "Terminal.h"
 #include "measuring/Measuring.h"
 
 namespace semantic_map_ros2 {

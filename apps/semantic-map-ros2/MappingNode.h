@@ -10,7 +10,7 @@
 #include "Driving.h"
 #include "MapMessages.h"
 #include "Sensors.h"
-#include "Signals.h"
+#include "Terminal.h"
 #include "TreeMessages.h"
 
 namespace semantic_map_ros2 {

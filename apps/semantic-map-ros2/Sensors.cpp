@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "point_fields/ImageFields.h"
 #include "point_fields/PointFields.h"
 
 namespace semantic_map_ros2 {

@@ -9,8 +9,6 @@
 
 #include "Application.h"
 #include "MappingNode.h"
-#include "Outputs.h"
-#include "StandardOutput.h"
 #include "TreeMessages.h"
 #include "inputs/Inputs.h"
 

@@ -13,9 +13,6 @@
 #include <ostream>
 
 #include "Application.h"
-#include "Options.h"
-#include "Signals.h"
-#include "StandardOutput.h"
 #include "inputs/Inputs.h"
 #include "radio/Radio.h"
 

@@ -1,7 +1,6 @@
 #include "CompressPanel.h"
 
 #include <GLFW/glfw3.h>
-#include <map_view/LiveCompression.h>
 #include <mrpt/core/format.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/TextFile.h>
@@ -12,8 +11,7 @@
 #include <numeric>
 #include <ostream>
 
-#include "StandardOutput.h"
-#include "map_window/Widgets.h"
+#include "Terminal.h"
 
 namespace semantic_map_view {
 

@@ -19,7 +19,6 @@ class CompressPanel {
    * classes with weight 1 */
   CompressPanel(Viewer& viewer, std::filesystem::path weights);
   CompressPanel(const CompressPanel&) = delete;
-  CompressPanel& operator=(const CompressPanel&) = delete;
 
   /** Shows the compressed tree, or the full map again. */
   void switchOn(bool on);
@@ -82,7 +81,6 @@ class WhyPanel {
  public:
   WhyPanel(Viewer& viewer, CompressPanel& compress);
   WhyPanel(const WhyPanel&) = delete;
-  WhyPanel& operator=(const WhyPanel&) = delete;
 
   /** \param cell none: nothing was clicked */
   void show(const std::optional<map_view::ViewCell>& cell);

@@ -10,7 +10,6 @@ class FilesPanel {
  public:
   FilesPanel(Viewer& viewer, TrackScene& tracks, PlanPanel& plan, const WantedTiles& wanted);
   FilesPanel(const FilesPanel&) = delete;
-  FilesPanel& operator=(const FilesPanel&) = delete;
 
  private:
   /** Before the next frame: panels must not change while they handle what a hand does. */

@@ -11,7 +11,7 @@
 #include <ostream>
 #include <utility>
 
-#include "StandardOutput.h"
+#include "Terminal.h"
 #include "Track.h"
 #include "map_window/Widgets.h"
 #include "measuring/Measuring.h"

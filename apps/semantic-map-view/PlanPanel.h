@@ -16,7 +16,6 @@ class PlanPanel {
    * \param vehicle (YAML); empty: a small robot */
   PlanPanel(Viewer& viewer, std::filesystem::path order, const std::filesystem::path& vehicle);
   PlanPanel(const PlanPanel&) = delete;
-  PlanPanel& operator=(const PlanPanel&) = delete;
 
   /** An order of classes, or a vehicle (YAML), by which is planned from now on.
    * \return what it is \throw std::runtime_error naming file, line and value */

@@ -26,7 +26,6 @@ class TrackScene {
  public:
   explicit TrackScene(Viewer& viewer);
   TrackScene(const TrackScene&) = delete;
-  TrackScene& operator=(const TrackScene&) = delete;
 
   void add(Track track);
   std::size_t size() const { return m_tracks.size(); }

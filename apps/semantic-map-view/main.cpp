@@ -13,8 +13,6 @@
 #include "Application.h"
 #include "CompressPanel.h"
 #include "FilesPanel.h"
-#include "Options.h"
-#include "Outputs.h"
 #include "PlanPanel.h"
 #include "map_window/ShowPanel.h"
 #include "map_window/Viewer.h"

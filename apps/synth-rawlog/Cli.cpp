@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "Options.h"
-
 namespace synth_rawlog {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "Outputs.h"
+#include "Application.h"
 #include "label_noise/LabelNoise.h"
 
 namespace synth_rawlog {

@@ -22,8 +22,6 @@
 
 #include "Application.h"
 #include "Cli.h"
-#include "Signals.h"
-#include "StandardOutput.h"
 #include "synthetic_rawlog/Observations.h"
 
 namespace synth_rawlog {

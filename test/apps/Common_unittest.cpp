@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "JsonFile.h"
+#include "Application.h"
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 #include "figures/FigureScript.h"

@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <algorithm>
 #include <string>
-#include <vector>
 
 #include "../semantic_octree/SmallScans.h"
 #include "RunProgram.h"

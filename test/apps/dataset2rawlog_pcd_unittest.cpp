@@ -5,6 +5,7 @@
 #include "FolderTest.h"
 #include "RunProgram.h"
 #include "SharedData.h"
+#include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
 using namespace semantic_types;
@@ -63,18 +64,6 @@ TEST_F(Pcd, filesMayBePlyAndTheLabelsFieldHasAnyName) {
   EXPECT_EQ(bare.at(0).scan.counts.labeled, 0u);
 }
 
-TEST_F(Pcd, fieldsOfSeveralValuesMoveTheOthers) {
-  const auto file = folder.write(
-      "a.pcd",
-      "FIELDS normal x y z label\nCOUNT 3 1 1 1 1\nPOINTS 2\nDATA ascii\n1 2 3 5 6 7 4\n"
-      "1 2 3 nan nan nan 2\n");
-  ClassTable table;
-  for (const char* name : {"a", "b", "c", "d"}) table.add(name, {});
-  const auto scans = convertAndRead("pcd " + quoted(file), folder / "out.rawlog", table);
-  EXPECT_LT((scans.at(0).scan.cloud.points[0] - Eigen::Vector3f(5, 6, 7)).norm(), 1e-5);
-  EXPECT_EQ(scans[0].scan.cloud.classes[0], 4);
-}
-
 TEST_F(Pcd, badInputIsNamed) {
   const std::string head = kPcdHead, fields = "FIELDS x y z label\n", data = "DATA ascii\n";
   const auto grid = [&](const std::string& size) {
@@ -82,18 +71,14 @@ TEST_F(Pcd, badInputIsNamed) {
   };
   const char* const otherNumber = " points, and POINTS says 2";
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
-           {head + "9 5 6 7 3\n", "1 lines of data for 2 points"},
            {head + "9 5 6 7 3\n9 5 6\n", "a.pcd:13"},
            {head + "9 5 6 7 3\n9 5 x 7 3\n", "a.pcd:13"},
            {head + "9 5 6 7 3\n9 5 6 7 255\n", "label 255 is not one of"},
            {head + "9 5 6 7 3\n9 5 6 7 -1\n", "no class id"},
            {head + "9 5 6 7 2abc\n9 5 6 7 3\n", "2abc"},
-           {"FIELDS x y z\nPOINTS 1\n" + data + "1 2 3\n", "no field 'label'"},
            {fields + "POINTS 1\nDATA raw\n", "expected ascii"},
-           {fields + "POINTS -1\n" + data, "expected a whole number"},
            {fields + "POINTS 0.5\n" + data, "expected a whole number"},
            {fields + "POINTS 1e300\n" + data, "expected a whole number"},
-           {fields + "COUNT 1 1 2 1\nPOINTS 1\n" + data + "1 2 3 4 5\n", "'z' has several values"},
            {fields + "COUNT 1 1 1\nPOINTS 1\n" + data + "1 2 3 4\n", "3 counts for 4 fields"},
            {grid("WIDTH 3\nHEIGHT 1"), otherNumber},
            {grid("WIDTH 2\nHEIGHT 0"), otherNumber},
@@ -128,4 +113,99 @@ TEST_F(Pcd, onATerminalABarSaysHowFarTheConversionIs) {
   EXPECT_TRUE(contains(shown, "Converting: [.....")) << shown;
   EXPECT_TRUE(contains(shown, "\r\033[K" + path("out.rawlog") + ": 1 scans")) << shown;
   EXPECT_FALSE(contains(runCommand(command).output, "Converting"));
+}
+
+namespace {
+
+/** Three beams, to the right, ahead and to the left: 2, 3 and 4 m. */
+const std::string kBeams = "0 -1.5707963 3.1415927 1.5707963 50 0.01 0 3 2 3 4 0 ";
+
+std::string ranges(int n, double meters) {
+  std::string text = std::to_string(n);
+  for (int i = 0; i < n; ++i) text += " " + std::to_string(meters);
+  return text;
+}
+
+std::string flaser(int n, double time = 976052857.5) {
+  return "FLASER " + ranges(n, 5) + " 9 9 9 1 2 1.5707963 " + std::to_string(time) + " host 0.1\n";
+}
+
+std::vector<PosedScan> scansOf(const std::string& log) {
+  const TemporaryFolder folder;
+  return convertAndRead("carmen " + quoted(folder.write("a.log", log)), folder / "out.rawlog", {});
+}
+
+void expectInMap(const PosedScan& scan, std::size_t i, const Vector3d& point) {
+  EXPECT_LT((scan.inMap(i) - point).norm(), 1e-4) << i << ": " << scan.inMap(i).transpose();
+}
+
+std::string messageOf(const std::string& log) {
+  const TemporaryFolder folder;
+  return failureOf("carmen " + quoted(folder.write("a.log", log)) + " -o " +
+                   quoted(folder / "out.rawlog"));
+}
+
+}  // namespace
+
+TEST(Carmen, oldLasersSeeHalfACircle) {
+  for (const int n : {181, 361}) {
+    const auto scans =
+        scansOf("# carmen\nPARAM robot_frontlaser_offset 0.5 # m\nSYNC x\n" + flaser(n));
+    ASSERT_EQ(scans.size(), 1u);
+    ASSERT_EQ(scans[0].scan.cloud.size(), static_cast<std::size_t>(n));
+    // The robot looks along y, with the laser half a meter ahead.
+    expectInMap(scans[0], 0, {6, 2.5, 0});
+    expectInMap(scans[0], static_cast<std::size_t>(n / 2), {1, 7.5, 0});
+    expectInMap(scans[0], static_cast<std::size_t>(n - 1), {-4, 2.5, 0});
+    EXPECT_NEAR(mrpt::Clock::toDouble(scans[0].scan.timestamp), 976052857.5, 1e-6);
+  }
+}
+
+TEST(Carmen, ofOtherNumbersOfBeamsAParameterSaysHowFarTheyAreApart) {
+  EXPECT_TRUE(contains(messageOf(flaser(91)), "a.log:1: FLASER: 91 ranges: how far"));
+  const auto scans = scansOf("PARAM laser_front_laser_resolution 2\n" + flaser(91));
+  expectInMap(scans.at(0), 0, {6, 2, 0});
+  expectInMap(scans[0], 90, {-4, 2, 0});
+}
+
+TEST(Carmen, newLasersSayWhereTheirBeamsAre) {
+  const auto scans = scansOf("ODOM 0 0 0 0 0 0 100 host 0\nRAWLASER1 " + kBeams +
+                             "100.5 host 0\nODOM 2 0 0 0 0 0 101 host 0\nROBOTLASER1 " + kBeams +
+                             "5.3 1 0 5 1 0 0 0 0 0 0 102 host 0\n");
+  ASSERT_EQ(scans.size(), 2u);
+  expectInMap(scans[0], 0, {1, -2, 0});
+  expectInMap(scans[0], 1, {4, 0, 0});
+  expectInMap(scans[0], 2, {1, 4, 0});
+  expectInMap(scans[1], 1, {8.3, 1, 0});
+}
+
+TEST(Carmen, whatIsAsFarAsTheLargestRangeIsNothing) {
+  const std::string near = flaser(181), far = "PARAM robot_front_laser_max 5\n" + flaser(181);
+  EXPECT_EQ(scansOf(near).at(0).scan.cloud.size(), 181u);
+  EXPECT_EQ(scansOf("RAWLASER1 0 0 1 1 3 0 0 2 2.9 3 0 1 h 0\nODOM 0 0 0 0 0 0 1 h 1\n")
+                .at(0)
+                .scan.cloud.size(),
+            1u);
+  EXPECT_EQ(scansOf(far).at(0).scan.cloud.size(), 0u);
+}
+
+TEST(Carmen, badLinesAreNamed) {
+  for (const auto& [line, message] : std::vector<std::pair<std::string, std::string>>{
+           {"FLASER 181 1 2", "FLASER: ends before number 3 of 181 ranges"},
+           {"FLASER x", "FLASER: the number of its ranges is no number: 'x'"},
+           {"FLASER -1", "FLASER: has no such number of ranges"},
+           {"FLASER 1e9", "FLASER: has no such number of ranges"},
+           {"FLASER 2 1 nan 0 0 0", "FLASER: number 2 of 2 ranges is no number: 'nan'"},
+           {"ODOM 1 2 3 0 0 0 1e20 host 0", "ODOM: "},
+           {"ODOM 1 2 3 0 0 0", "ODOM: ends before its time"},
+           {"RAWLASER1 0 -1.57 3.14 0.1 50 0 0 3 1 2 3 0 1 h 0", "do not fill its field of view"},
+           {"RAWLASER1 0 -1.57 90 0.1 50 0 0 1 1 0 1 h 0", "do not fill its field of view"},
+           {flaser(181, 50), "is of a time before the one before it"}})
+    EXPECT_TRUE(contains(messageOf(flaser(181) + line), "a.log:2: ") &&
+                contains(messageOf(flaser(181) + line), message))
+        << messageOf(flaser(181) + line);
+}
+
+TEST(Carmen, aLogWithoutScansMakesNoRawlog) {
+  EXPECT_TRUE(contains(messageOf("ODOM 1 2 3 0 0 0 1 host 0\n"), "no frame was selected"));
 }

@@ -1,9 +1,73 @@
 // Labels from images and networks, through the whole application.
 #include <labeled_cloud/Rawlogs.h>
+#include <mrpt/obs/CObservationImage.h>
+#include <mrpt_compat/Images.h>
+#include <semantic_types/ClassTable.h>
+#include <opencv2/imgcodecs.hpp>
 
+#include <map>
 #include <random>
+#include <string>
+#include <vector>
 
-#include "CameraFixture.h"
+#include "MappingFixture.h"
+#include "NearestColorNetwork.h"
+
+namespace {
+
+/** A camera of 40 x 40 pixels and 90 degrees that looks along the robot's x axis, and a scan of two
+ * points ahead: (4, 1, 0), which it sees in the left half of its image, and (4, -1, 0). */
+class CameraMapping : public Rawlog2SemanticMap {
+ protected:
+  static mrpt::obs::CObservationImage picture(double seconds) {
+    mrpt::obs::CObservationImage o;
+    o.sensorLabel = "front";
+    o.timestamp = at(seconds);
+    o.cameraParams.ncols = o.cameraParams.nrows = 40;
+    o.cameraParams.setIntrinsicParamsFromValues(20, 20, 19.5, 19.5);
+    const double right = -M_PI / 2;
+    o.cameraPose = mrpt::poses::CPose3D(0, 0, 0, right, 0, right);
+    o.image = mrpt_compat::toMrpt(redAndBlue());
+    return o;
+  }
+
+  /** Left half the color of road, right half that of car. */
+  static cv::Mat redAndBlue() {
+    cv::Mat image(40, 40, CV_8UC3, cv::Scalar(0, 0, 255));
+    image.colRange(20, 40) = cv::Scalar(255, 0, 0);
+    return image;
+  }
+
+  static labeled_cloud::CObservationLabeledCloud unlabeledScan(double seconds) {
+    auto scan = labeledCloud(seconds, {{4.1f, 1.1f, 0.1f}, {4.1f, -1.1f, 0.1f}}, {});
+    scan.classNames.clear();
+    return scan;
+  }
+
+  void SetUp() override {
+    Rawlog2SemanticMap::SetUp();
+    mrpt_compat::writeImagesWithoutLoss();
+    writeSmallRawlog(folder / "camera.rawlog", robotPose(10, 0), unlabeledScan(10), picture(10.01));
+    std::filesystem::create_directory(folder / "labels");
+    cv::imwrite((folder / "labels/10.01.png").string(), redAndBlue());
+  }
+
+  Words labels() const { return {"--labels", (folder / "labels").string()}; }
+  Words network() const {
+    const auto table = semantic_types::loadClassTable(folder / "classes.yaml");
+    folder.write("net.yaml", nearestColorConfig(40, 40, table));
+    return {"--network", saveNearestColorNetwork(folder / "net.onnx", 40, 40, table).string(),
+            "--network-config", (folder / "net.yaml").string()};
+  }
+  void configure(const std::string& more) const { folder.write("small.ini", kSmallConfig + more); }
+
+  void expectLabeledMap() const {
+    EXPECT_EQ(map().query(4.1, 1.1, 0.1).likeliestClass, 1);
+    EXPECT_EQ(map().query(4.1, -1.1, 0.1).likeliestClass, 3);
+  }
+};
+
+}  // namespace
 
 namespace fs = std::filesystem;
 
@@ -185,5 +249,127 @@ TEST_F(Rawlog2SemanticMap, howFarLabelsAreTrustedIsTold) {
     EXPECT_EQ(contains(result.output, told), wrong > 0) << result.output;
     EXPECT_NEAR(summary()["labels"]["accuracy"], wrong > 0 ? 0.72 : 0.93, 0.025);
     EXPECT_NEAR(summary()["labels"]["correlation"], wrong > 0 ? 0.02 : 0.8, 1e-9);
+  }
+}
+
+TEST_F(Rawlog2SemanticMap, aRawlogThatCannotBeMappedIsRefused) {
+  const std::string whole = folder.read("small.rawlog");
+  std::string corrupt = whole;
+  corrupt[corrupt.size() / 2] ^= 0x55;
+  folder.write("empty.rawlog", "");
+  folder.write("half.rawlog", whole.substr(0, whole.size() / 2));
+  folder.write("cut.rawlog", whole.substr(0, whole.size() - 1));
+  folder.write("corrupt.rawlog", corrupt);
+  folder.write("text.rawlog", "This is no rawlog.");
+  fs::copy_file(
+      fs::path(MSO_SOURCE_DIR) / "test/fuzz/corpus/rawlog/velodyne_calibration_beyond_memory",
+      folder / "calibration.rawlog");
+  writeSmallRawlog(folder / "lost.rawlog", smallScan(10));
+  writeSmallRawlog(folder / "late.rawlog", robotPose(10, 0), smallScan(20));
+  writeSmallRawlog(folder / "far.rawlog", robotPose(10, 1e6), smallScan(10));
+  const std::map<std::string, Words> cases = {
+      {"none.rawlog", {"none.rawlog"}},
+      {"empty.rawlog", {"empty.rawlog", "empty"}},
+      {"half.rawlog", {"half.rawlog", "cut off"}},
+      {"cut.rawlog", {"cut.rawlog", "cut off"}},
+      {"corrupt.rawlog", {"corrupt.rawlog"}},
+      {"text.rawlog", {"text.rawlog: ", "object 1"}},
+      {"calibration.rawlog", {"calibration.rawlog", "object 2"}},
+      {"lost.rawlog", {"lost.rawlog", "no robot poses", "or --static-pose if"}},
+      {"late.rawlog", {"nothing to map", "1 outside the trajectory"}},
+      {"far.rawlog", {"far.rawlog: observation 2", "outside the map"}}};
+  for (const auto& [rawlog, parts] : cases) expectRefusal(parts, rawlog);
+  EXPECT_LT(run("calibration.rawlog").peakKilobytes, 500'000);
+  folder.write("classes.yaml", "classes:\n  - {id: 1, name: road, color: [1, 2, 3]}\n");
+  expectRefusal({"small.rawlog: observation 2", "lidar", "car"});
+}
+
+TEST_F(Rawlog2SemanticMap, whatIsNoRawlogIsCalledByItsNameWithTheCommandThatMakesOne) {
+  folder.write("00/velodyne/000000.bin", "x");
+  expectRefusal({"00: is no rawlog, but a KITTI sequence; dataset2rawlog semantic-kitti"}, "00");
+  folder.write("desk/depth.txt", "x");
+  expectRefusal({"desk: is no rawlog, but a TUM RGB-D sequence; dataset2rawlog tum"}, "desk");
+  folder.write("bag/a.mcap", "x");
+  expectRefusal({"bag: is no rawlog, but a bag of ROS 2; dataset2rawlog rosbag2"}, "bag");
+  expectRefusal({"a.mcap: is no rawlog, but a bag of ROS 2; dataset2rawlog rosbag2 ",
+                 "bag/a.mcap --classes TABLE.yaml -o a.rawlog makes a rawlog of it"},
+                "bag/a.mcap");
+  folder.write("intel.log", "# CARMEN\nPARAM x y\nFLASER 180 1.0\n");
+  expectRefusal({"intel.log: is no rawlog, but a log of CARMEN; dataset2rawlog carmen"},
+                "intel.log");
+  folder.write("logs/b.rawlog", "x");
+  expectRefusal({"logs: is no rawlog, but a folder; did you mean '", "logs/b.rawlog'?"}, "logs");
+}
+
+TEST_F(Rawlog2SemanticMap, posesOfKittiThatDoNotFitTheScansAreRefused) {
+  const auto refuse = [&](const std::string& poses, const Words& parts) {
+    folder.write("poses.txt", poses);
+    expectRefusal(parts, "small.rawlog", {"--trajectory", path("poses.txt")});
+  };
+  const std::string here = "1 0 0 0 0 1 0 0 0 0 1 0\n", forward = "1 0 0 2 0 1 0 0 0 0 1 0\n";
+  refuse(here + forward, {"poses.txt: 2 poses for 1 scans"});
+  refuse(here + "1 0 0 0 0 1 0 0 0 0 1 2\n", {"poses.txt: these are poses of a camera"});
+  refuse("2 0 0 0 0 1 0 0 0 0 1 0\n", {"poses.txt:1", "no rotation"});
+  refuse(here + "1 0 0 2 0 1 0 0 0 0 1\n", {"poses.txt:2", "expected 12 numbers, found 11"});
+}
+
+TEST_F(Rawlog2SemanticMap, aRawlogThatBreaksOffWhileItIsMappedLeavesNothing) {
+  const std::string whole = folder.read("small.rawlog");
+  folder.write("cut.rawlog", whole.substr(0, whole.size() - 1));
+  folder.write("poses.tum", "9 3.1 0 0 0 0 0 1\n11 5.1 0 0 0 0 0 1\n");
+  const Words poses = {"--trajectory", path("poses.tum")};
+  expectRefusal({"cut.rawlog", "cut off"}, "cut.rawlog", poses);
+  fs::remove_all(folder / "out");
+  EXPECT_EQ(run("cut.rawlog", poses).status, 1);
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST_F(Rawlog2SemanticMap, labelImagesThatDoNotFitAreRefused) {
+  const Words labels = {"--labels", path("labels")};
+  expectRefusal({"labels"}, "small.rawlog", labels);
+  writeSmallRawlog(folder / "depth.rawlog", robotPose(10, 0), depthImage(10, 40, 40));
+  fs::create_directory(folder / "labels");
+  const std::string image = path("labels/10.00.png");
+  cv::imwrite(image, cv::Mat(40, 30, CV_8UC1, cv::Scalar(2)));
+  expectRefusal({"depth.rawlog: observation 2", "10.00.png", "30", "40"}, "depth.rawlog", labels);
+  cv::imwrite(image, cv::Mat(40, 40, CV_8UC1, cv::Scalar(77)));
+  expectRefusal({"10.00.png", "77"}, "depth.rawlog", labels);
+}
+
+TEST_F(Rawlog2SemanticMap, aConfigurationWithAWrongLineIsRefused) {
+  const std::string small = kSmallConfig;
+  const std::vector<std::pair<std::string, Words>> cases = {
+      {"[map]\nresolutoin = 1\n", {"[map]", "'resolutoin'"}},
+      {"[insertion]\nmaxrnage = 1\n", {"[insertion]", "'maxrnage'"}},
+      {"[labels]\nfolder = 1\n", {"[labels]", "'folder'"}},
+      {"[pictures]\nsize = 1\n", {"[pictures]", "'size'"}},
+      {small + "[inserting]\nmax_range = 3\n", {"[inserting]", "did you mean 'insertion'?"}},
+      {small + "[abstraction]\nrelevant = rode: 1\n",
+       {"[abstraction] with the classes of ", "classes.yaml: relevant: ", "unknown class 'rode'",
+        "known are free_space, road", "did you mean 'road'?"}}};
+  for (const auto& [text, parts] : cases) {
+    folder.write("small.ini", text);
+    Words all = parts;
+    all.push_back("small.ini");
+    expectRefusal(all);
+  }
+}
+
+TEST_F(Rawlog2SemanticMap, missingFilesAreRefusedByName) {
+  expectRefusal({"none.yaml"}, "small.rawlog", {"--classes", path("none.yaml")});
+  expectRefusal({"none.tum"}, "small.rawlog", {"--trajectory", path("none.tum")});
+  fs::remove(folder / "small.ini");
+  expectRefusal({"small.ini"});
+}
+
+TEST_F(Rawlog2SemanticMap, anOutputFolderThatCannotBeWrittenIsRefusedByName) {
+  const fs::path file = folder.write("file", "of before");
+  for (const fs::path& output : {file, file / "below"}) {
+    const ProgramRun result = runProgram(
+        "rawlog2semantic-map",
+        {"--config", path("small.ini"), "--output", output.string(), path("small.rawlog")});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(contains(result.errors, output.string() + ": cannot write")) << result.errors;
+    EXPECT_EQ(folder.read("file"), "of before");
   }
 }

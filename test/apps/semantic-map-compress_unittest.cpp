@@ -5,11 +5,24 @@
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "AllAlphas.h"
-#include "CompressionOptions.h"
 #include "CsvTable.h"
 #include "SemanticMapCompress.h"
+
+namespace {
+
+/** In blocks of 3.2 m. */
+inline semantic_octree::AbstractionOptions optionsOf(
+    std::vector<tree_abstraction::InformationTerm> terms, double alpha) {
+  semantic_octree::AbstractionOptions options;
+  options.weights.terms = std::move(terms);
+  options.weights.alpha = alpha;
+  options.blockSize = 3.2;
+  return options;
+}
 
 namespace fs = std::filesystem;
 using namespace semantic_octree;
@@ -17,8 +30,6 @@ using nlohmann::json;
 using tree_abstraction::irrelevant;
 using tree_abstraction::kLn2;
 using tree_abstraction::relevant;
-
-namespace {
 
 const char* const kToSize = "{name: a, relevant: {post: 1}, everything: 0.2, block_size: 3.2}";
 

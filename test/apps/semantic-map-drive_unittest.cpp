@@ -53,17 +53,6 @@ class SemanticMapDrive : public FolderTest {
 
 }  // namespace
 
-TEST_F(SemanticMapDrive, KeepsPicturesOnTheWayAndNoneOfALongerDrive) {
-  ASSERT_EQ(drive({"--no-rawlog", "--picture-every", "5"}).status, 0);
-  const double seconds = jsonIn("drive/drive.json")["seconds"];
-  const int last = static_cast<int>(seconds / 5) + 1;  // and one at the end
-  EXPECT_TRUE(has("drive/drive-000" + std::to_string(last) + ".png"));
-  EXPECT_FALSE(has("drive/drive-000" + std::to_string(last + 1) + ".png"));
-  ASSERT_EQ(drive({"--no-rawlog", "--picture-every", "100"}).status, 0);
-  EXPECT_TRUE(has("drive/drive-0001.png"));
-  EXPECT_FALSE(has("drive/drive-0002.png"));
-}
-
 TEST_F(SemanticMapDrive, DrawsAnAnimationUnlessItIsNotWanted) {
   auto arguments = argumentsWith(
       {"--config", configWith("timeLimit = 3\n"), "--output", path("drive"), "--no-rawlog"});
@@ -224,7 +213,7 @@ std::unique_ptr<TemporaryFolder> DrivesInFolders::made;
 
 TEST_F(DrivesInFolders, AreTheDrivesInTheMapInOnePieceToTheLastBit) {
   const auto before = filesIn(of("tiles"));
-  const Words ends = {"--no-rawlog", "--picture-every", "10", "--map"};
+  const Words ends = {"--no-rawlog", "--map"};
   for (const std::string latency : {"0", "0.3"}) {
     SCOPED_TRACE(latency);
     const auto driveIn = [&](const std::string& map, const std::string& output) {
@@ -236,7 +225,7 @@ TEST_F(DrivesInFolders, AreTheDrivesInTheMapInOnePieceToTheLastBit) {
     };
     driveIn(of("map/map.semantic"), "whole");
     driveIn(of("tiles"), "tiles");
-    for (const char* file : {"drive.csv", "map.semantic", "drive.png", "drive-0001.png"}) {
+    for (const char* file : {"drive.csv", "map.semantic", "drive.png"}) {
       SCOPED_TRACE(file);
       EXPECT_FALSE(folder.read("whole/" + std::string(file)).empty());
       EXPECT_TRUE(folder.read("whole/" + std::string(file)) ==
@@ -256,4 +245,3 @@ TEST_F(DrivesInFolders, HaveNoWindow) {
   EXPECT_NE(run.errors.find("--live: a map in a folder of tiles is not shown"), std::string::npos)
       << run.errors;
 }
-

@@ -3,8 +3,6 @@
 
 #include "Application.h"
 #include "FuzzedFile.h"
-#include "Options.h"
-#include "Outputs.h"
 #include "Readers.h"
 #include "dataset2rawlog/Conversion.h"
 #include "point_fields/PointFields.h"
@@ -80,16 +78,13 @@ void parseCommandLine(const std::string& bytes) {
   semantic_octree::InsertionOptions insertion;
   mrpt::math::TPose2D start;
   fs::path input, output;
-  strict_files::OptionList planning, inserting;
-  planner.describe(planning);
-  insertion.describe(inserting);
   CLI::App app("Reads words", "program");
   Outputs outputs(app);
   outputs.add(app, output, "FILE", "File to write");
   app.add_option("INPUT", input);
   poses::addPose(app, "--start", start, "Where it begins");
-  addOptions(app, planning, "Planning");
-  addOptions(app, inserting, "Insertion");
+  addOptions(app, strict_files::OptionList::of(planner), "Planning");
+  addOptions(app, strict_files::OptionList::of(insertion), "Insertion");
   makeHelpReadable(app);
 
   std::vector<std::string> words;

@@ -164,6 +164,11 @@ TEST(PointFile, announcedSizesAreHeldAgainstTheBytes) {
                  "do not become the 2100000000");
 }
 
+TEST(PointFile, coordinatesMayBeMissing) {
+  const auto points = read("FIELDS x y z class\nPOINTS 1\nDATA ascii\nnan -nan 1 2\n").points;
+  EXPECT_TRUE(points.at(0).head<2>().array().isNaN().all());
+}
+
 TEST(PointFile, whatIsMalformedIsNamed) {
   const std::string three = rows(randomPoints(3));
   const std::string good = pcdHead(3, "binary") + three;

@@ -1,15 +1,12 @@
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 
-#include <random>
-
 #include "Conversions.h"
 #include "DepthCamera.h"
 
 using namespace labeled_cloud;
 using Eigen::Vector3f;
 using mrpt::obs::CObservation3DRangeScan;
-using semantic_types::ClassId;
 using semantic_types::ClassTable;
 
 namespace {

@@ -4,7 +4,6 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <filesystem>
-#include <initializer_list>
 
 /** Writes a rawlog of these objects, through MRPT's own streams. */
 template <typename Stream = mrpt::io::CFileGZOutputStream>

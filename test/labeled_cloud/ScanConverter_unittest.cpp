@@ -16,7 +16,6 @@
 
 using namespace labeled_cloud;
 using Eigen::Vector3f;
-using mrpt::obs::CObservation3DRangeScan;
 using mrpt::obs::CObservationComment;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;

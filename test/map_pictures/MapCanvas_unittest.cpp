@@ -10,8 +10,6 @@
 #include "PaintedField.h"
 #include "TemporaryFolder.h"
 
-using map_pictures::Arrow;
-using map_pictures::bgr;
 using map_pictures::Color;
 using map_pictures::MapCanvas;
 using map_pictures::Stroke;

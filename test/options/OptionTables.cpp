@@ -7,7 +7,6 @@
 #include <map_operations/SmoothedView.h>
 #include <map_pictures/MapPictures.h>
 #include <semantic_driving/Movers.h>
-#include <semantic_driving/ObstacleSensing.h>
 #include <semantic_driving/ViewStrategy.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_map/MapOptions.h>

@@ -1,7 +1,27 @@
 #pragma once
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+/** Messages of a Markdown file, those in the first column of its tables in `backticks`, that no
+ * source below these folders says. What changes in them is written as FILE, NAME, X (a capital
+ * alone), a number, or `...`; a part between may be of two texts that a source puts together.
+ * \return "file:line: part that is not said" */
+std::vector<std::string> messagesNobodySays(const std::filesystem::path& markdownFile,
+                                            const std::vector<std::filesystem::path>& sources);
+
+/** The words of a text: what stands between spaces and has a letter or a digit. */
+std::size_t countWords(const std::string& text);
+
+/** The sentences of a Markdown text that have four words or more: of paragraphs, list items and
+ * cells of tables, without headings and code. A link is its text, and code within a sentence is one
+ * word. */
+std::vector<std::string> sentencesOf(const std::string& markdown);
+
+/** The smallest of the numbers that a share of them does not exceed. \throw std::invalid_argument
+ * no numbers. */
+std::size_t quantile(std::vector<std::size_t> numbers, double share);
 
 /** Each returns its findings as "file:line: what is wrong", with paths relative to `root`. */
 std::vector<std::string> linesWithTrailingSpace(const std::filesystem::path& root);

@@ -12,7 +12,7 @@
 
 #include "CompressedInput.h"
 #include "ReactiveSystem.h"
-#include "simulated_drive/SimulatedRobot.h"
+#include "simulated_drive/DriveConfig.h"
 
 using namespace semantic_driving;
 using namespace semantic_planning;

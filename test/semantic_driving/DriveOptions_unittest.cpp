@@ -7,7 +7,6 @@
 
 #include "TemporaryFolder.h"
 #include "simulated_drive/DriveConfig.h"
-#include "simulated_drive/SimulatedRobot.h"
 
 using namespace semantic_driving;
 using semantic_planning::PathPoint;

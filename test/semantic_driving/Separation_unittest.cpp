@@ -7,7 +7,7 @@
 #include <random>
 
 #include "StepAside.h"
-#include "simulated_drive/SimulatedRobot.h"
+#include "simulated_drive/DriveConfig.h"
 
 using namespace semantic_driving;
 using Eigen::Vector2d;

@@ -21,16 +21,14 @@ void expectNames(std::size_t count) {
 
 TEST(PlannerOptions, haveNamesOfTheirOwn) {
   PlannerOptions options;
-  strict_files::OptionList list;
-  options.describe(list);
+  const auto list = strict_files::OptionList::of(options);
   const std::vector<std::string> names = list.names();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }
 
 TEST(PlannerOptions, areSetByTheirNames) {
   PlannerOptions options;
-  strict_files::OptionList list;
-  options.describe(list);
+  const auto list = strict_files::OptionList::of(options);
   const auto set = [&](const char* name, const char* text) { list.find(name)->set(text); };
   set("graph", "full");
   set("vertices", "700");

@@ -112,8 +112,7 @@ class YamlOptions : public testing::Test {
  protected:
   some::Options read(const std::string& text) const {
     some::Options options;
-    strict_files::OptionList list;
-    options.describe(list);
+    const auto list = strict_files::OptionList::of(options);
     const StrictYaml yaml(folder.write("o.yaml", text));
     const auto names = list.names();
     yaml.checkKeys(yaml.root(), {names.begin(), names.end()});
@@ -192,16 +191,10 @@ using strict_files::OptionList;
 
 namespace {
 
-OptionList listOf(Options& options) {
-  OptionList list;
-  options.describe(list);
-  return list;
-}
-
 /** What setting an option to this text fails with; empty: it does not. */
 std::string refusal(const std::string& name, const std::string& text) {
   Options options;
-  const OptionList list = listOf(options);
+  const OptionList list = OptionList::of(options);
   return errorOf([&] { list.find(name)->set(text); });
 }
 
@@ -209,7 +202,7 @@ std::string refusal(const std::string& name, const std::string& text) {
 
 TEST(OptionList, anOptionIsFoundHoweverItsWordsAreParted) {
   Options options;
-  const OptionList list = listOf(options);
+  const OptionList list = OptionList::of(options);
   for (const char* name : {"max_gap", "maxGap", "max-gap", "MAXGAP"}) {
     ASSERT_TRUE(list.find(name)) << name;
     EXPECT_EQ(list.find(name)->name, "max_gap");
@@ -219,7 +212,7 @@ TEST(OptionList, anOptionIsFoundHoweverItsWordsAreParted) {
 
 TEST(OptionList, textsAreOfEachKind) {
   Options options;
-  const OptionList list = listOf(options);
+  const OptionList list = OptionList::of(options);
   std::vector<std::string> texts;
   for (const Option& option : list.options()) texts.push_back(option.text());
   EXPECT_EQ(texts, (std::vector<std::string>{"2", "inf", "3", "7", "true", "false", "green",
@@ -228,7 +221,7 @@ TEST(OptionList, textsAreOfEachKind) {
 
 TEST(OptionList, whatIsAllowedIsSaidInWords) {
   Options options;
-  const OptionList list = listOf(options);
+  const OptionList list = OptionList::of(options);
   const auto expected = [&](const char* name) { return list.find(name)->expected; };
   EXPECT_EQ(expected("length"), "a number above 0 up to 10");
   EXPECT_EQ(expected("max_gap"), "a number of 0 or more, or infinite");
@@ -254,7 +247,7 @@ TEST(OptionList, endsOfARangeAreAllowedOrNot) {
 
 TEST(OptionList, whatIsNoValueIsRefusedAndChangesNothing) {
   Options options;
-  const OptionList list = listOf(options);
+  const OptionList list = OptionList::of(options);
   for (const auto& [name, text] :
        std::vector<std::pair<std::string, std::string>>{{"length", ""},
                                                         {"length", "2 m"},
@@ -272,7 +265,7 @@ TEST(OptionList, whatIsNoValueIsRefusedAndChangesNothing) {
     EXPECT_EQ(error.rfind("is ", 0), 0u) << name << " = " << text << ": " << error;
   }
   Options fresh;
-  const OptionList untouched = listOf(fresh);
+  const OptionList untouched = OptionList::of(fresh);
   for (const Option& option : list.options())
     EXPECT_EQ(option.text(), untouched.find(option.name)->text()) << option.name;
 }
@@ -296,7 +289,7 @@ TEST(OptionList, valuesOfStructsAreCheckedAndNamed) {
 
 TEST(OptionList, aRemovedOptionIsNotThere) {
   Options options;
-  OptionList list = listOf(options);
+  OptionList list = OptionList::of(options);
   list.remove("count");
   EXPECT_FALSE(list.find("count"));
   EXPECT_EQ(list.names().size(), 9u);
@@ -313,7 +306,7 @@ RC_GTEST_PROP(OptionList, textsAreReadBackWithoutLoss,
   options.color = on ? Color::DarkRed : Color::Green;
   if (length < 5) options.floor = length;
   options.place = {length, gap, -length};
-  const OptionList from = listOf(options), to = listOf(read);
+  const OptionList from = OptionList::of(options), to = OptionList::of(read);
   for (const Option& option : from.options()) to.find(option.name)->set(option.text());
   RC_ASSERT(read.length == options.length);
   RC_ASSERT(read.gap == options.gap);

@@ -32,13 +32,9 @@ inline std::size_t entriesOf(const std::filesystem::path& folder) {
                                                 std::filesystem::directory_iterator()));
 }
 
-}  // namespace
-
 namespace fs = std::filesystem;
 using strict_files::OutputFolder;
 using strict_files::StagedFile;
-
-namespace {
 
 /** Forks; the child ends with the action's result. */
 template <class Action>

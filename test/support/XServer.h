@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <initializer_list>
 #include <string>
-#include <vector>
 
 #include "BuiltPrograms.h"
 #include "RunProgram.h"

@@ -1,11 +1,18 @@
 #include "Bag.h"
 
+#include <lz4frame.h>
 #include <sqlite3.h>
+#include <zlib.h>
+#include <zstd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+
+#include "ByteReader.h"
 
 namespace bags {
 
@@ -133,6 +140,210 @@ void readSqliteBag(const std::filesystem::path& file, const WantsTopic& wants,
     const auto topic = wanted.find(messages.number(0));
     if (topic != wanted.end() && !take(topic->second, messages.bytes(1))) return;
   }
+}
+
+namespace {
+
+[[noreturn]] void failAs(std::string_view compression, const char* what) {
+  throw std::runtime_error("a chunk compressed by " + std::string(compression) +
+                           " is damaged: " + what);
+}
+
+struct Zstd {
+  static constexpr std::string_view kName = "zstd";
+  std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream{ZSTD_createDStream(),
+                                                                       &ZSTD_freeDStream};
+  void step(std::string_view& in, char* out, std::size_t& space) const {
+    ZSTD_inBuffer input{in.data(), in.size(), 0};
+    ZSTD_outBuffer output{out, space, 0};
+    const std::size_t result = ZSTD_decompressStream(stream.get(), &output, &input);
+    if (ZSTD_isError(result)) failAs(kName, ZSTD_getErrorName(result));
+    in.remove_prefix(input.pos);
+    space = output.pos;
+  }
+};
+
+struct Lz4 {
+  static constexpr std::string_view kName = "lz4";
+  LZ4F_dctx* context = nullptr;
+
+  Lz4() {
+    if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)))
+      throw std::bad_alloc();
+  }
+  ~Lz4() { LZ4F_freeDecompressionContext(context); }
+  Lz4(const Lz4&) = delete;
+  Lz4& operator=(const Lz4&) = delete;
+  void step(std::string_view& in, char* out, std::size_t& space) const {
+    std::size_t taken = in.size();
+    const std::size_t result = LZ4F_decompress(context, out, &space, in.data(), &taken, nullptr);
+    if (LZ4F_isError(result)) failAs(kName, LZ4F_getErrorName(result));
+    in.remove_prefix(taken);
+  }
+};
+
+template <class Method>
+std::string decompressed(std::string_view in, std::uint64_t size) {
+  constexpr std::size_t kStep = 1 << 20;
+  const Method method;
+  std::string out;
+  while (true) {
+    const std::size_t begin = out.size(), left = in.size();
+    std::size_t space = std::min<std::uint64_t>(kStep, size - begin + 1);  // one more is an error
+    out.resize(begin + space);
+    method.step(in, out.data() + begin, space);
+    out.resize(begin + space);
+    if (out.size() > size) failAs(Method::kName, "it is larger than announced");
+    if (space == 0 && (in.empty() || in.size() == left)) break;
+  }
+  if (out.size() != size || !in.empty()) failAs(Method::kName, "it is not of the announced size");
+  return out;
+}
+
+/** What was compressed; memory grows with what comes out, not with what is announced.
+ * \param compression "" (it was not), "zstd" or "lz4" \param size as announced
+ * \throw std::runtime_error it is another compression, damaged, or of another size. */
+std::string uncompressed(std::string_view bytes, std::string_view compression, std::uint64_t size) {
+  if (size > kMostChunkBytes)
+    throw std::runtime_error("a chunk of " + std::to_string(size) + " bytes, expected at most " +
+                             std::to_string(kMostChunkBytes));
+  if (compression == Zstd::kName) return decompressed<Zstd>(bytes, size);
+  if (compression == Lz4::kName) return decompressed<Lz4>(bytes, size);
+  if (!compression.empty())
+    throw std::runtime_error("a chunk is compressed by '" + std::string(compression) +
+                             "', expected zstd or lz4");
+  if (bytes.size() != size) throw std::runtime_error("a chunk is not of the announced size");
+  return std::string(bytes);
+}
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+constexpr std::uint64_t kMostRecordBytes = kMostChunkBytes;
+
+enum Opcode : std::uint8_t {
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kDataEnd = 0x0f
+};
+
+/** The records of a file from its begin to the end of its data. What stands behind, the summary, is
+ * not looked at. */
+class McapReader {
+ public:
+  McapReader(const fs::path& file, const WantsTopic& wants, const TakeMessage& take)
+      : m_in(file, std::ios::binary), m_wants(wants), m_take(take) {
+    if (!m_in) throw std::runtime_error("cannot be read");
+    m_left = fs::file_size(file);
+  }
+
+  void read() {
+    if (next(kMagic.size()) != kMagic) throw std::runtime_error("is no MCAP file");
+    while (m_goesOn) {
+      const std::string head = next(9);
+      ByteReader reader(head);
+      const auto opcode = reader.number<std::uint8_t>();
+      const auto size = reader.number<std::uint64_t>();
+      if (opcode == kDataEnd || opcode == kFooter) return;
+      if (isOfUse(opcode))
+        add(opcode, next(size), true);
+      else
+        skip(size);
+    }
+  }
+
+ private:
+  static bool isOfUse(std::uint8_t opcode) { return opcode >= kSchema && opcode <= kChunk; }
+
+  std::string next(std::uint64_t size) {
+    check(size);
+    if (size > kMostRecordBytes)
+      throw std::runtime_error("a record of " + std::to_string(size) + " bytes, expected at most " +
+                               std::to_string(kMostRecordBytes));
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    m_in.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (!m_in) throw std::runtime_error("cannot be read");
+    return bytes;
+  }
+  void skip(std::uint64_t size) {
+    check(size);
+    m_in.seekg(static_cast<std::streamoff>(size), std::ios::cur);
+  }
+  void check(std::uint64_t size) {
+    if (size > m_left)
+      throw std::runtime_error("is cut off: " + std::to_string(size) + " bytes expected, " +
+                               std::to_string(m_left) + " are left");
+    m_left -= size;
+  }
+
+  void add(std::uint8_t opcode, std::string_view content, bool mayBeChunk) {
+    ByteReader reader(content);
+    if (opcode == kSchema)
+      addSchema(reader);
+    else if (opcode == kChannel)
+      addChannel(reader);
+    else if (opcode == kMessage)
+      addMessage(reader);
+    else if (opcode == kChunk && mayBeChunk)
+      addChunk(reader);
+  }
+  void addSchema(ByteReader& reader) {
+    const auto id = reader.number<std::uint16_t>();
+    m_schemas[id] = std::string(reader.text());
+  }
+  void addChannel(ByteReader& reader) {
+    const auto id = reader.number<std::uint16_t>(), schema = reader.number<std::uint16_t>();
+    BagTopic topic;
+    topic.name = std::string(reader.text());
+    const std::string_view encoding = reader.text();
+    const auto type = m_schemas.find(schema);
+    if (type != m_schemas.end()) topic.type = type->second;
+    const bool isKnown = m_channels.count(id) > 0;
+    if (isKnown) return;
+    const bool isWanted = encoding == "cdr" && m_wants(topic);
+    m_channels[id] = isWanted ? std::optional<BagTopic>(topic) : std::nullopt;
+  }
+  void addMessage(ByteReader& reader) {
+    const auto channel = m_channels.find(reader.number<std::uint16_t>());
+    if (channel == m_channels.end()) throw std::runtime_error("a message has no channel");
+    constexpr std::uint64_t kRest = 4 + 8 + 8;  // its number and two times
+    reader.bytes(kRest);
+    if (channel->second && m_goesOn)
+      m_goesOn = m_take(*channel->second, reader.bytes(reader.left()));
+  }
+  void addChunk(ByteReader& reader) {
+    reader.bytes(16);  // two times
+    const auto size = reader.number<std::uint64_t>();
+    const auto checksum = reader.number<std::uint32_t>();
+    const std::string_view compression = reader.text();
+    const std::string records =
+        uncompressed(reader.bytes(reader.number<std::uint64_t>()), compression, size);
+    if (checksum != 0 &&
+        checksum != crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size()))
+      throw std::runtime_error("a chunk is damaged: its checksum is another");
+    ByteReader inside(records);
+    while (!inside.atEnd() && m_goesOn) {
+      const auto opcode = inside.number<std::uint8_t>();
+      add(opcode, inside.bytes(inside.number<std::uint64_t>()), false);
+    }
+  }
+
+  std::ifstream m_in;
+  std::uint64_t m_left = 0;
+  const WantsTopic& m_wants;
+  const TakeMessage& m_take;
+  bool m_goesOn = true;
+  std::map<std::uint16_t, std::string> m_schemas;
+  std::map<std::uint16_t, std::optional<BagTopic>> m_channels;  ///< none: not wanted
+};
+
+}  // namespace
+
+void readMcap(const fs::path& file, const WantsTopic& wants, const TakeMessage& take) {
+  McapReader(file, wants, take).read();
 }
 
 }  // namespace bags

@@ -25,12 +25,22 @@ class CdrReader {
     if (beyond > 0) m_bytes.bytes(sizeof(T) - beyond);
     return m_bytes.number<T>(m_isBigEndian);
   }
+  template <class... Numbers>
+  void read(Numbers&... numbers) {
+    ((numbers = number<Numbers>()), ...);
+  }
   std::string text() {
     std::string_view text = m_bytes.bytes(number<std::uint32_t>());
     if (!text.empty() && text.back() == '\0') text.remove_suffix(1);
     return std::string(text);
   }
-  std::string_view sequenceOfBytes() { return m_bytes.bytes(number<std::uint32_t>()); }
+  /** Those of an image or a cloud. */
+  template <class Raw>
+  void readBytes(Raw& raw) {
+    const std::string_view data = m_bytes.bytes(number<std::uint32_t>());
+    raw.data = reinterpret_cast<const std::uint8_t*>(data.data());
+    raw.size = data.size();
+  }
   /** A number of elements, each of which takes so many bytes at least. */
   std::uint32_t count(std::size_t leastSize) {
     const auto count = number<std::uint32_t>();
@@ -85,14 +95,11 @@ BagImage imageOfMessage(std::string_view message) {
   CdrReader cdr(message);
   BagImage image{cdr.header(), {}};
   auto& pixels = image.pixels;
-  pixels.height = cdr.number<std::uint32_t>();
-  pixels.width = cdr.number<std::uint32_t>();
+  cdr.read(pixels.height, pixels.width);
   pixels.encoding = cdr.text();
   pixels.isBigEndian = cdr.number<std::uint8_t>() != 0;
-  pixels.step = cdr.number<std::uint32_t>();
-  const std::string_view data = cdr.sequenceOfBytes();
-  pixels.data = reinterpret_cast<const std::uint8_t*>(data.data());
-  pixels.size = data.size();
+  cdr.read(pixels.step);
+  cdr.readBytes(pixels);
   return image;
 }
 
@@ -100,11 +107,10 @@ point_fields::RawCamera cameraOfMessage(std::string_view message) {
   CdrReader cdr(message);
   cdr.header();
   point_fields::RawCamera camera;
-  camera.height = cdr.number<std::uint32_t>();
-  camera.width = cdr.number<std::uint32_t>();
+  cdr.read(camera.height, camera.width);
   camera.model = cdr.text();
   camera.distortion = cdr.numbers<double>();
-  for (double& value : camera.matrix) value = cdr.number<double>();
+  for (double& value : camera.matrix) cdr.read(value);
   return camera;
 }
 
@@ -112,13 +118,9 @@ BagLaserScan laserScanOfMessage(std::string_view message) {
   CdrReader cdr(message);
   BagLaserScan scan{cdr.header(), {}};
   auto& beams = scan.beams;
-  beams.firstAngle = cdr.number<float>();
-  cdr.number<float>();  // last angle
-  beams.angleStep = cdr.number<float>();
-  beams.timeStep = cdr.number<float>();
-  cdr.number<float>();  // between scans
-  beams.leastRange = cdr.number<float>();
-  beams.mostRange = cdr.number<float>();
+  float lastAngle, betweenScans;
+  cdr.read(beams.firstAngle, lastAngle, beams.angleStep, beams.timeStep, betweenScans,
+           beams.leastRange, beams.mostRange);
   beams.ranges = cdr.numbers<float>();
   return scan;
 }
@@ -127,8 +129,7 @@ BagCloud cloudOfMessage(std::string_view message) {
   CdrReader cdr(message);
   BagCloud cloud{cdr.header(), {}};
   auto& points = cloud.points;
-  points.height = cdr.number<std::uint32_t>();
-  points.width = cdr.number<std::uint32_t>();
+  cdr.read(points.height, points.width);
   constexpr std::size_t kLeastField = 13;
   for (std::uint32_t left = cdr.count(kLeastField); left > 0; --left) {
     point_fields::RawCloud::Field field;
@@ -139,11 +140,8 @@ BagCloud cloudOfMessage(std::string_view message) {
     points.fields.push_back(field);
   }
   points.isBigEndian = cdr.number<std::uint8_t>() != 0;
-  points.pointStep = cdr.number<std::uint32_t>();
-  points.rowStep = cdr.number<std::uint32_t>();
-  const std::string_view data = cdr.sequenceOfBytes();
-  points.data = reinterpret_cast<const std::uint8_t*>(data.data());
-  points.size = data.size();
+  cdr.read(points.pointStep, points.rowStep);
+  cdr.readBytes(points);
   return cloud;
 }
 

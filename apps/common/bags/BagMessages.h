@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "point_fields/Frames.h"
-#include "point_fields/ImageFields.h"
 #include "point_fields/PointFields.h"
 
 namespace bags {

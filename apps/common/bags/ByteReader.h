@@ -1,11 +1,10 @@
 #pragma once
-#include <algorithm>
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "point_fields/PointFields.h"
 
 namespace bags {
 
@@ -30,12 +29,8 @@ class ByteReader {
   /** A number, lowest byte first, or the other way round. */
   template <class T>
   T number(bool isBigEndian = false) {
-    std::array<char, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes(sizeof(T)).data(), sizeof(T));
-    if (isBigEndian) std::reverse(raw.begin(), raw.end());
-    T value;
-    std::memcpy(&value, raw.data(), sizeof(T));
-    return value;
+    const char* place = bytes(sizeof(T)).data();
+    return point_fields::numberAt<T>(reinterpret_cast<const std::uint8_t*>(place), isBigEndian);
   }
   /** A text, which its length in four bytes precedes. */
   std::string_view text() { return bytes(number<std::uint32_t>()); }

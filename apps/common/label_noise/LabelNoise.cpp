@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "Options.h"
+#include "Application.h"
 
 namespace label_noise {
 

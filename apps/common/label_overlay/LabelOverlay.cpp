@@ -1,7 +1,6 @@
 #include "LabelOverlay.h"
 
 #include <mrpt_compat/Images.h>
-#include <semantic_types/ClassTable.h>
 
 #include <opencv2/imgproc.hpp>
 

@@ -1,6 +1,5 @@
 #include "Layer.h"
 
-#include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
 #include <strict_files/Words.h>
 

@@ -69,34 +69,36 @@ class PacePanel {
   float m_speed = kFastest;
 };
 
-class LiveMap::Window {
+class LiveWindow : public LiveMap {
  public:
-  Window(const std::string& title, const semantic_octree::SemanticOcTree& map,
-         const Beginning& beginning)
+  LiveWindow(const std::string& title, const semantic_octree::SemanticOcTree& map,
+             const Beginning& beginning)
       : m_window(ViewWindow::open(title, kWidth, kHeight)),
         m_viewer(*m_window, layersOf(map), beginning),
         m_pace(*m_window),
         m_show(m_viewer),
         m_ask(m_viewer) {
     m_window->onClick([this](const map_view::Ray& ray) { m_ask.ask(ray); });
-    m_window->marks()->insert(marks);
+    m_window->marks()->insert(m_marks);
     m_window->setVisible(true);
     m_isOpen = m_window->attend();
     if (!beginning.camera) m_camera = m_window->orbitCamera().text();
   }
 
-  bool isOpen() const { return m_isOpen; }
-  void pause() { m_pace.pause(); }
-  void say(const std::vector<std::string>& lines) {
+  mrpt_compat::drawing::CSetOfObjects& marks() override { return *m_marks; }
+  void stopWhen(const std::function<bool()>& isToEnd) override { m_isToEnd = isToEnd; }
+  bool isOpen() const override { return m_isOpen; }
+  void pause() override { m_pace.pause(); }
+  void say(const std::vector<std::string>& lines) override {
     if (m_isOpen) m_pace.say(lines);
   }
 
-  void showPicture(const mrpt::img::CImage& picture) {
+  void showPicture(const mrpt::img::CImage& picture) override {
     if (m_isOpen) m_window->showPicture(picture, kPictureWidth);
   }
-  void changed(const Eigen::AlignedBox3d& box) { m_changed.extend(box); }
+  void changed(const Eigen::AlignedBox3d& box) override { m_changed.extend(box); }
 
-  void show(double seconds) {
+  void show(double seconds) override {
     if (!m_isOpen) return;
     // While tiles are still drawn, others wait: else tiles far away would never have their turn.
     if (!m_changed.isEmpty() && m_isComplete) {
@@ -111,20 +113,16 @@ class LiveMap::Window {
       if (!m_isOpen) return m_window->setVisible(false);
       m_isComplete = m_window->isComplete();
       const double passed = glfwGetTime() - begin;
-      if ((passed >= seconds && m_pace.isDue(passed)) || isToEnd()) return;
+      if ((passed >= seconds && m_pace.isDue(passed)) || m_isToEnd()) return;
       if (m_isComplete) glfwWaitEventsTimeout(kAttend);
     } while (true);
   }
 
-  void stay() {
+  void stay() override {
     m_pace.say({"done: close the window to end"});
-    while (m_isOpen && !m_changed.isEmpty() && !isToEnd()) show(0);
-    if (m_isOpen && !isToEnd()) show(HUGE_VAL);
+    while (m_isOpen && !m_changed.isEmpty() && !m_isToEnd()) show(0);
+    if (m_isOpen && !m_isToEnd()) show(HUGE_VAL);
   }
-
-  std::function<bool()> isToEnd = [] { return false; };
-  const mrpt_compat::drawing::CSetOfObjects::Ptr marks =
-      mrpt_compat::drawing::CSetOfObjects::Create();
 
  private:
   KeyBox keysOf(const Eigen::AlignedBox3d& box) {
@@ -160,28 +158,20 @@ class LiveMap::Window {
   ShowPanel m_show;
   AskPanel m_ask;
   bool m_isOpen = true, m_isComplete = true;
+  std::function<bool()> m_isToEnd = [] { return false; };
+  const mrpt_compat::drawing::CSetOfObjects::Ptr m_marks =
+      mrpt_compat::drawing::CSetOfObjects::Create();
   Eigen::AlignedBox3d m_changed;
   std::string m_camera;  ///< as it followed last
   double m_countAt = 0;  ///< s of GLFW's clock
 };
 
-LiveMap::LiveMap(const std::string& title, const semantic_octree::SemanticOcTree& map,
-                 const Beginning& beginning) try
-    : m_window(std::make_unique<Window>(title, map, beginning)) {
+std::unique_ptr<LiveMap> LiveMap::open(const std::string& title,
+                                       const semantic_octree::SemanticOcTree& map,
+                                       const Beginning& beginning) try {
+  return std::make_unique<LiveWindow>(title, map, beginning);
 } catch (const std::exception& e) {
   throw std::runtime_error("--live: " + strict_files::messageOf(e));
 }
-
-LiveMap::~LiveMap() = default;
-
-mrpt_compat::drawing::CSetOfObjects& LiveMap::marks() { return *m_window->marks; }
-void LiveMap::say(const std::vector<std::string>& lines) { m_window->say(lines); }
-void LiveMap::showPicture(const mrpt::img::CImage& picture) { m_window->showPicture(picture); }
-void LiveMap::changed(const Eigen::AlignedBox3d& box) { m_window->changed(box); }
-bool LiveMap::isOpen() const { return m_window->isOpen(); }
-void LiveMap::stopWhen(const std::function<bool()>& isToEnd) { m_window->isToEnd = isToEnd; }
-void LiveMap::pause() { m_window->pause(); }
-void LiveMap::show(double seconds) { m_window->show(seconds); }
-void LiveMap::stay() { m_window->stay(); }
 
 }  // namespace map_window

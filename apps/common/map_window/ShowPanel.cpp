@@ -10,7 +10,7 @@
 #include <numeric>
 #include <ostream>
 
-#include "StandardOutput.h"
+#include "Terminal.h"
 #include "Widgets.h"
 
 namespace map_window {

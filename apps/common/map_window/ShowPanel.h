@@ -10,7 +10,6 @@ class AskPanel {
  public:
   explicit AskPanel(Viewer& viewer);
   AskPanel(const AskPanel&) = delete;
-  AskPanel& operator=(const AskPanel&) = delete;
 
   /** \return the cell that the ray meets, if there is one */
   std::optional<map_view::ViewCell> ask(const map_view::Ray& ray);
@@ -30,7 +29,6 @@ class ShowPanel {
  public:
   explicit ShowPanel(Viewer& viewer);
   ShowPanel(const ShowPanel&) = delete;
-  ShowPanel& operator=(const ShowPanel&) = delete;
 
   /** The map has grown. */
   void refresh();

@@ -1,7 +1,6 @@
 #include "ViewWindow.h"
 
 #include <map_pictures/MapCanvas.h>
-#include <mrpt_compat/Drawing.h>
 #include <nanogui/nanogui.h>
 #include <nanogui/opengl.h>
 

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <set>
 
-#include "StandardOutput.h"
+#include "Terminal.h"
 #include "measuring/Measuring.h"
 
 namespace map_window {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "Beginning.h"
 #include "Layer.h"
+#include "LiveMap.h"
 #include "ViewWindow.h"
 
 namespace map_window {

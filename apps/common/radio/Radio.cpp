@@ -4,7 +4,6 @@
 #include <map_streams/MapStream.h>
 #include <netdb.h>
 #include <poll.h>
-#include <semantic_abstraction/AbstractionOptions.h>
 #include <sodium.h>
 #include <strict_files/TextFile.h>
 #include <sys/socket.h>

@@ -1,25 +1,89 @@
 #include "DriveConfig.h"
 
 #include <mrpt/config/CConfigFile.h>
+#include <mrpt/math/wrap2pi.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/IniSection.h>
-#include <strict_files/TextFile.h>
-#include <strict_files/Words.h>
 #include <synthetic_world/Solids.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 
 namespace simulated_drive {
 
+using mrpt::math::TPose2D;
+
+void PoseOptions::describe(strict_files::OptionList& list) {
+  using strict_files::between;
+  list.add("odometry_noise", odometryNoise, "m", between(0, 1),
+           "standard deviation of the way after a meter; grows with its square root");
+  list.add("turn_noise", turnNoise, "degrees", between(0, 90),
+           "of the heading after a meter; grows alike");
+}
+
+void PoseOptions::validate() const { strict_files::checkOptions(*this, "PoseOptions"); }
+
+SimulatedOdometry::SimulatedOdometry(const TPose2D& start, const PoseOptions& options,
+                                     std::uint64_t seed)
+    : m_options(options), m_pose(start), m_noise(synthetic_world::Random::ofStream(seed, 1, 0)) {
+  m_options.validate();
+}
+
+void SimulatedOdometry::move(const TPose2D& motion) {
+  constexpr double kDegree = M_PI / 180;
+  const double root = std::sqrt(std::hypot(motion.x, motion.y));
+  TPose2D measured = motion;
+  measured.x += m_options.odometryNoise * root * m_noise.normal();
+  measured.phi += m_options.turnNoise * kDegree * root * m_noise.normal();
+  m_pose = m_pose + measured;
+}
+
+using semantic_driving::DriveCommand;
+
+namespace {
+
+/** From one value towards another, by at most this much. */
+double towards(double from, double to, double most) {
+  return from + std::clamp(to - from, -most, most);
+}
+
+}  // namespace
+
+SimulatedRobot::SimulatedRobot(const mrpt::math::TPose2D& start,
+                               const semantic_driving::DriveOptions& limits)
+    : m_limits(limits) {
+  m_state.pose = start;
+}
+
+void SimulatedRobot::drive(const DriveCommand& command, double seconds) {
+  constexpr int kSteps = 10;
+  for (int i = 0; i < kSteps; ++i) step(command, seconds / kSteps);
+}
+
+void SimulatedRobot::step(const DriveCommand& command, double seconds) {
+  constexpr double kTurnAcceleration = 4;  // rad/s^2, of the steering
+  const double wanted = std::clamp(command.speed, -m_limits.maxSpeed, m_limits.maxSpeed);
+  m_state.speed = towards(m_state.speed, wanted, m_limits.maxAcceleration * seconds);
+  // The command's curve, not its turning: a car that is not up to its speed steers as if it were.
+  const double curvature = std::abs(command.speed) > 1e-6 ? command.turn / command.speed : 0;
+  const double most = std::abs(m_state.speed) / m_limits.turningRadius;
+  const double turn = std::clamp(curvature * m_state.speed, -most, most);
+  m_state.turn = std::clamp(towards(m_state.turn, turn, kTurnAcceleration * seconds), -most, most);
+  const double heading = m_state.pose.phi + m_state.turn * seconds / 2;
+  m_state.pose.x += m_state.speed * seconds * std::cos(heading);
+  m_state.pose.y += m_state.speed * seconds * std::sin(heading);
+  m_state.pose.phi = mrpt::math::wrapToPi(m_state.pose.phi + m_state.turn * seconds);
+}
+
 namespace fs = std::filesystem;
-using mrpt::config::CConfigFileBase;
+using mrpt::config::CConfigFile;
 using strict_files::above;
 using strict_files::between;
 using strict_files::IniSection;
 using strict_files::OptionList;
+using strict_files::readOptions;
+using strict_files::readSection;
 
 namespace {
 
@@ -34,56 +98,27 @@ void describeLoop(DriveConfig& config, std::string& reactive, OptionList& list) 
   list.add("time_limit", config.timeLimit, "s", above(0), "of simulated time");
 }
 
-/** Reads sections strictly, one after the other, and knows in the end which there are. */
-class Sections {
- public:
-  explicit Sections(const CConfigFileBase& ini) : m_ini(ini) {}
-
-  IniSection read(const std::string& name, const OptionList& list) {
-    m_known.push_back(name);
-    IniSection section(m_ini, name);
-    section.read(list);
-    section.finish();
-    return section;
-  }
-  /** A struct that describes and checks itself. */
-  template <class Options>
-  void readAll(const std::string& name, Options& options) {
-    m_known.push_back(name);
-    strict_files::readSection(m_ini, name, options);
-  }
-  void refuseOthers() const { strict_files::checkSections(m_ini, m_known); }
-
- private:
-  const CConfigFileBase& m_ini;
-  std::vector<std::string> m_known;
-};
-
-void readMap(Sections& sections, const fs::path& folder, DriveConfig& config) {
-  OptionList map, insertion;
+void readMap(const CConfigFile& ini, const fs::path& folder, DriveConfig& config) {
+  OptionList map;
   map.add("resolution", config.voxelSize, "m", above(0), "edge of a voxel");
   std::string halfLives;
   map.add("half_lives", halfLives, "",
           "class table (YAML) with half-lives, by which the map forgets");
-  sections.read("map", map);
+  readOptions(ini, "map", map);
   if (!halfLives.empty()) config.halfLives = (folder / halfLives).lexically_normal();
-  config.insertion.describe(insertion);
-  config.filter.describe(insertion);
-  sections.read("insertion", insertion);
+  readOptions(ini, "insertion", OptionList::of(config.insertion, config.filter));
   config.insertion.validate();
 }
 
-void readSensors(Sections& sections, SensorConfig& sensors) {
-  OptionList general, camera;
-  sensors.describe(general);
-  const IniSection section = sections.read("sensors", general);
+void readSensors(const CConfigFile& ini, SensorConfig& sensors) {
+  const IniSection section = readOptions(ini, "sensors", OptionList::of(sensors));
   if (!sensors.hasCamera && !sensors.hasLidar) section.fail("camera and lidar are both off");
   sensors.lidar.noise = sensors.camera.noise;
-  sensors.camera.describe(camera);
+  OptionList camera = OptionList::of(sensors.camera);
   camera.add("pitch", sensors.cameraPitch, "degrees", between(-90, 90), "how far down it looks");
-  sections.read("camera", camera);
+  readOptions(ini, "camera", camera);
   sensors.camera.validate();
-  sections.readAll("lidar", sensors.lidar);
+  readSection(ini, "lidar", sensors.lidar);
 }
 
 /** Exploring knows the sensors: the LiDAR, if there is one, for it sees all around. */
@@ -105,23 +140,22 @@ void setSensor(DriveConfig& config) {
     explore.sensor.range = std::min(explore.sensor.range, config.insertion.maxRange);
 }
 
-void readPlanner(Sections& sections, const fs::path& folder,
+void readPlanner(const CConfigFile& ini, const fs::path& folder,
                  semantic_planning::PlannerOptions& planner) {
   std::string vehicle;
   OptionList list;
   list.add("vehicle", vehicle, "", "file of the vehicle (.yaml)");
   planner.describe(list);
-  sections.read("planner", list);
+  readOptions(ini, "planner", list);
   if (!vehicle.empty()) planner.vehicle = semantic_planning::loadVehicle(folder / vehicle);
   planner.validate();
 }
 
-void readDrive(Sections& sections, const fs::path& folder, DriveConfig& config) {
+void readDrive(const CConfigFile& ini, const fs::path& folder, DriveConfig& config) {
   std::string reactive;
-  OptionList list;
-  config.drive.describe(list);
+  OptionList list = OptionList::of(config.drive);
   describeLoop(config, reactive, list);
-  const IniSection section = sections.read("drive", list);
+  const IniSection section = readOptions(ini, "drive", list);
   config.drive.validate();
   if (reactive.empty()) section.fail("reactive: expected MRPT's .ini file");
   config.reactive = (folder / reactive).lexically_normal();
@@ -152,31 +186,26 @@ semantic_slam::MapperOptions DriveConfig::mapping() const {
 }
 
 DriveConfig loadDriveConfig(const fs::path& file) {
-  if (!fs::is_regular_file(file) || !std::ifstream(file))
-    throw std::runtime_error(file.string() + ": cannot be read");
-  try {
-    DriveConfig config;
-    strict_files::checkIniText(strict_files::readText(file));
-    mrpt::config::CConfigFile ini(file.string());
-    ini.discardSavingChanges();
-    Sections sections(ini);
-    readMap(sections, file.parent_path(), config);
-    readSensors(sections, config.sensors);
-    sections.readAll("pose", config.pose);
-    sections.readAll("slam", config.slam);
-    readPlanner(sections, file.parent_path(), config.planner);
-    readDrive(sections, file.parent_path(), config);
-    sections.readAll("guide", config.guide);
-    sections.readAll("movers", config.movers);
-    sections.readAll("focus", config.focus);
-    sections.readAll("explore", config.explore);
+  DriveConfig config;
+  const fs::path folder = file.parent_path();
+  strict_files::readIniFile<CConfigFile>(file, [&](const CConfigFile& ini) {
+    readMap(ini, folder, config);
+    readSensors(ini, config.sensors);
+    readSection(ini, "pose", config.pose);
+    readSection(ini, "slam", config.slam);
+    readPlanner(ini, folder, config.planner);
+    readDrive(ini, folder, config);
+    readSection(ini, "guide", config.guide);
+    readSection(ini, "movers", config.movers);
+    readSection(ini, "focus", config.focus);
+    readSection(ini, "explore", config.explore);
     setSensor(config);
     const semantic_driving::MoverTracker known(config.movers, synthetic_world::classTable());
-    sections.refuseOthers();
-    return config;
-  } catch (const std::exception& e) {
-    throw std::runtime_error(file.string() + ": " + strict_files::messageOf(e));
-  }
+    strict_files::checkSections(
+        ini, {"map", "insertion", "sensors", "camera", "lidar", "pose", "slam", "planner", "drive",
+              "guide", "movers", "focus", "explore"});
+  });
+  return config;
 }
 
 }  // namespace simulated_drive

@@ -169,17 +169,6 @@ double badLength(const std::vector<double>& perClass, const colored_graph::Class
   return sum;
 }
 
-const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd) {
-  static const strict_files::Choices<DriveEnd> choices = {
-      {"arrived", DriveEnd::Arrived},      {"nearest", DriveEnd::Nearest},
-      {"astray", DriveEnd::Astray},        {"unreachable", DriveEnd::Unreachable},
-      {"time_limit", DriveEnd::TimeLimit}, {"stopped", DriveEnd::Stopped},
-      {"explored", DriveEnd::Explored}};
-  return choices;
-}
-
-const char* nameOf(DriveEnd end) { return strict_files::nameIn(choicesOf(end), end); }
-
 void DriveRecord::add(const DriveRow& row, std::optional<semantic_types::ClassId> planned,
                       double way) {
   drivenPerClass[row.classId] += way;

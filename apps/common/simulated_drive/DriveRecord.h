@@ -32,9 +32,13 @@ struct DriveRow {
  * that fits. Astray: it believes to have arrived, but has not. Stopped: the user wanted no more of
  * it. */
 enum class DriveEnd { Arrived, Nearest, Astray, Unreachable, TimeLimit, Stopped, Explored };
-const strict_files::Choices<DriveEnd>& choicesOf(DriveEnd);
-/** "arrived", "nearest", "astray", "unreachable", "time_limit", "stopped" or "explored". */
-const char* nameOf(DriveEnd end);
+inline strict_files::Choices<DriveEnd> choicesOf(DriveEnd) {
+  return {{"arrived", DriveEnd::Arrived},      {"nearest", DriveEnd::Nearest},
+          {"astray", DriveEnd::Astray},        {"unreachable", DriveEnd::Unreachable},
+          {"time_limit", DriveEnd::TimeLimit}, {"stopped", DriveEnd::Stopped},
+          {"explored", DriveEnd::Explored}};
+}
+inline const char* nameOf(DriveEnd end) { return strict_files::nameIn(choicesOf(end), end); }
 
 /** A whole drive. */
 struct DriveRecord {

@@ -17,13 +17,6 @@
 
 namespace labeled_cloud {
 
-const strict_files::Choices<LabelImage::View>& choicesOf(LabelImage::View) {
-  using View = LabelImage::View;
-  static const strict_files::Choices<View> choices = {{"depth", View::Depth},
-                                                      {"color", View::Color}};
-  return choices;
-}
-
 using mrpt::Clock;
 using mrpt::obs::CObservation;
 using mrpt::obs::CObservation3DRangeScan;
@@ -169,13 +162,6 @@ std::string externalName(const CObservation& observation) {
 
 }  // namespace
 
-const strict_files::Choices<LabelFolderOptions::Match>& choicesOf(LabelFolderOptions::Match) {
-  using Match = LabelFolderOptions::Match;
-  static const strict_files::Choices<Match> choices = {{"time", Match::Time},
-                                                       {"name", Match::Name}};
-  return choices;
-}
-
 void LabelFolderOptions::describe(strict_files::OptionList& list) {
   list.add("match", match, "",
            "how label images are found: their names are times, or those of the observations' own "
@@ -274,16 +260,15 @@ ClassId classOfColor(const ClassTable& table, std::uint32_t bgr) {
                               ", " + std::to_string(color.b) + ") is not in the class table");
 }
 
-/** Classes of an image whose pixel (row, col) has the value VALUE_AT(row, col). */
-template <typename ValueAt, typename LookUp>
-LabelImage classify(int rows, int cols, ValueAt valueAt, LookUp lookUp) {
+template <typename Pixel, typename ValueOf, typename LookUp>
+LabelImage classify(const cv::Mat& pixels, ValueOf valueOf, LookUp lookUp) {
   LabelImage image;
-  image.rows = rows, image.cols = cols;
-  image.classes.reserve(std::size_t(rows) * cols);
+  image.rows = pixels.rows, image.cols = pixels.cols;
+  image.classes.reserve(pixels.total());
   Cached<LookUp> classOf(lookUp);
-  for (int row = 0; row < rows; ++row)
-    for (int col = 0; col < cols; ++col) try {
-        image.classes.push_back(classOf(valueAt(row, col)));
+  for (int row = 0; row < image.rows; ++row)
+    for (int col = 0; col < image.cols; ++col) try {
+        image.classes.push_back(classOf(valueOf(pixels.at<Pixel>(row, col))));
       } catch (const std::invalid_argument& e) {
         throw std::runtime_error(std::string(e.what()) + " (pixel in row " + std::to_string(row) +
                                  ", column " + std::to_string(col) + ")");
@@ -294,21 +279,17 @@ LabelImage classify(int rows, int cols, ValueAt valueAt, LookUp lookUp) {
 LabelImage classesOf(const cv::Mat& pixels, const ClassTable& table) {
   const auto raw = [&table](std::uint32_t id) { return table.fromRaw(id); };
   const auto colored = [&table](std::uint32_t bgr) { return classOfColor(table, bgr); };
+  const auto same = [](std::uint32_t id) { return id; };
   const auto bgrOf = [](const auto& p) { return std::uint32_t(p[2] << 16 | p[1] << 8 | p[0]); };
-  const int rows = pixels.rows, cols = pixels.cols;
   switch (pixels.type()) {
     case CV_8UC1:
-      return classify(
-          rows, cols, [&](int r, int c) { return pixels.at<std::uint8_t>(r, c); }, raw);
+      return classify<std::uint8_t>(pixels, same, raw);
     case CV_16UC1:
-      return classify(
-          rows, cols, [&](int r, int c) { return pixels.at<std::uint16_t>(r, c); }, raw);
+      return classify<std::uint16_t>(pixels, same, raw);
     case CV_8UC3:
-      return classify(
-          rows, cols, [&](int r, int c) { return bgrOf(pixels.at<cv::Vec3b>(r, c)); }, colored);
+      return classify<cv::Vec3b>(pixels, bgrOf, colored);
     case CV_8UC4:
-      return classify(
-          rows, cols, [&](int r, int c) { return bgrOf(pixels.at<cv::Vec4b>(r, c)); }, colored);
+      return classify<cv::Vec4b>(pixels, bgrOf, colored);
     default:
       throw std::runtime_error("expected ids of 8 or 16 bits, a palette, or 8-bit colors");
   }

@@ -1,17 +1,14 @@
 #include "PointGrid.h"
 
 #include <labeled_cloud/Pictures.h>
-#include <mrpt/img/TCamera.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace labeled_cloud {
 

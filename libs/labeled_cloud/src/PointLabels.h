@@ -1,5 +1,6 @@
 #pragma once
 #include <labeled_cloud/LabelImage.h>
+#include <labeled_cloud/ScanConverter.h>
 #include <mrpt/obs/CObservation.h>
 #include <semantic_types/LabeledCloud.h>
 
@@ -7,6 +8,9 @@
 #include <vector>
 
 namespace labeled_cloud {
+
+/** The source that reads this observation, null if there is none. */
+std::shared_ptr<const PointSource> pointSourceOf(const mrpt::obs::CObservation& observation);
 
 /** The labels of a cloud's points, taken from one label image or several of the same kind. */
 class PointLabels {

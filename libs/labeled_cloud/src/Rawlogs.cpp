@@ -1,7 +1,6 @@
 #include <labeled_cloud/Rawlogs.h>
 
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <mrpt/io/CStream.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
@@ -15,16 +14,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "PointLabels.h"
 

@@ -1,7 +1,5 @@
 #include <labeled_cloud/ScanConverter.h>
 
-#include <labeled_cloud/LabelImage.h>
-#include <labeled_cloud/Pictures.h>
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/core/bits_math.h>
 #include <strict_files/Words.h>
@@ -12,7 +10,6 @@
 
 #include "PointGrid.h"
 #include "PointLabels.h"
-#include "PointSources.h"
 
 namespace labeled_cloud {
 

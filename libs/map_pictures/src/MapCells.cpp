@@ -1,13 +1,9 @@
 #include "MapCells.h"
 
-#include <map_pictures/MapCanvas.h>
-#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <unordered_map>
 
 namespace map_pictures {
 

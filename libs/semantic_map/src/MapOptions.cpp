@@ -30,13 +30,6 @@ std::vector<std::string> foreignKeys(const Other&) {
   return {};
 }
 
-template <class Derived>
-OptionList listOf(Derived& options) {
-  OptionList list;
-  options.describe(list);
-  return list;
-}
-
 }  // namespace
 
 template <class Derived>
@@ -44,7 +37,7 @@ void TNamedOptions<Derived>::loadFromConfigFile(const CConfigFileBase& source,
                                                 const std::string& section) {
   Derived loaded = static_cast<Derived&>(*this);
   IniSection ini(source, section);
-  ini.read(listOf(loaded));
+  ini.read(OptionList::of(loaded));
   for (const std::string& key : foreignKeys(loaded)) ini.text(key);
   ini.finish();
   try {
@@ -59,7 +52,7 @@ template <class Derived>
 void TNamedOptions<Derived>::saveToConfigFile(CConfigFileBase& target,
                                               const std::string& section) const {
   Derived copy = static_cast<const Derived&>(*this);
-  for (const Option& option : listOf(copy).options())
+  for (const Option& option : OptionList::of(copy).options())
     // No padding, which MRPT would take for a part of the key.
     target.write(section, option.name, option.text(), -1, -1, option.help);
 }
@@ -67,14 +60,14 @@ void TNamedOptions<Derived>::saveToConfigFile(CConfigFileBase& target,
 template <class Derived>
 void TNamedOptions<Derived>::dumpToTextStream(std::ostream& out) const {
   Derived copy = static_cast<const Derived&>(*this);
-  for (const Option& option : listOf(copy).options())
+  for (const Option& option : OptionList::of(copy).options())
     out << "  " << option.name << " = " << option.text() << "  // " << option.help << "\n";
 }
 
 template <class Derived>
 void TNamedOptions<Derived>::writeTo(CArchive& out) const {
   Derived copy = static_cast<const Derived&>(*this);
-  const OptionList list = listOf(copy);
+  const OptionList list = OptionList::of(copy);
   out.WriteAs<std::uint32_t>(list.options().size());
   for (const Option& option : list.options()) out << option.name << option.text();
 }
@@ -82,7 +75,7 @@ void TNamedOptions<Derived>::writeTo(CArchive& out) const {
 template <class Derived>
 void TNamedOptions<Derived>::readFrom(CArchive& in) {
   Derived read;
-  const OptionList list = listOf(read);
+  const OptionList list = OptionList::of(read);
   for (auto left = in.ReadAs<std::uint32_t>(); left > 0; --left) {
     const std::string name = readText(in), text = readText(in);
     const Option* option = list.find(name);

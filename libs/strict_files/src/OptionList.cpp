@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 
 namespace strict_files {
 

@@ -10,10 +10,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <mutex>
 #include <random>
 #include <set>
-#include <stdexcept>
 
 namespace strict_files {
 

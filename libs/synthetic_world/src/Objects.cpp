@@ -1,7 +1,5 @@
 #include <synthetic_world/Objects.h>
 
-#include <synthetic_world/Solids.h>
-
 namespace synthetic_world {
 namespace {
 

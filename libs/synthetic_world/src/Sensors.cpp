@@ -1,7 +1,5 @@
 #include <synthetic_world/Sensors.h>
 
-#include <synthetic_world/Objects.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

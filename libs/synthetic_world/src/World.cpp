@@ -1,9 +1,6 @@
 #include <synthetic_world/World.h>
 
-#include <Eigen/Core>
-
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace synthetic_world {

@@ -49,7 +49,9 @@ struct LabelImage {
   semantic_types::ClassId classOf(std::size_t cell) const;
 };
 
-const strict_files::Choices<LabelImage::View>& choicesOf(LabelImage::View);
+inline strict_files::Choices<LabelImage::View> choicesOf(LabelImage::View) {
+  return {{"depth", LabelImage::View::Depth}, {"color", LabelImage::View::Color}};
+}
 
 /** Whatever finds the label image of an observation: a field of it, a folder of images, a network.
  */
@@ -99,7 +101,9 @@ struct LabelFolderOptions {
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
-const strict_files::Choices<LabelFolderOptions::Match>& choicesOf(LabelFolderOptions::Match);
+inline strict_files::Choices<LabelFolderOptions::Match> choicesOf(LabelFolderOptions::Match) {
+  return {{"time", LabelFolderOptions::Match::Time}, {"name", LabelFolderOptions::Match::Name}};
+}
 
 /** Label images in a folder (PNG, TIFF, PGM or BMP), one for each image of a camera, of its size.
  *

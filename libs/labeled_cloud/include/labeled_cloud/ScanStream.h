@@ -34,8 +34,14 @@ struct ScanStreamOptions {
 
   void describe(strict_files::OptionList& list);
 };
-const strict_files::Choices<ScanStreamOptions::OnProblem>& choicesOf(ScanStreamOptions::OnProblem);
-const strict_files::Choices<ScanStreamOptions::Unlabeled>& choicesOf(ScanStreamOptions::Unlabeled);
+inline strict_files::Choices<ScanStreamOptions::OnProblem> choicesOf(ScanStreamOptions::OnProblem) {
+  return {{"stop", ScanStreamOptions::OnProblem::Stop},
+          {"skip", ScanStreamOptions::OnProblem::Skip}};
+}
+inline strict_files::Choices<ScanStreamOptions::Unlabeled> choicesOf(ScanStreamOptions::Unlabeled) {
+  return {{"occupancy", ScanStreamOptions::Unlabeled::Occupancy},
+          {"skip", ScanStreamOptions::Unlabeled::Skip}};
+}
 
 /** What became of one observation of a rawlog. */
 struct StreamedObservation {

@@ -50,8 +50,7 @@ Footprint readFootprint(const StrictYaml& yaml, const YAML::Node& node) {
 VehicleOptions loadVehicle(const std::filesystem::path& file) {
   const StrictYaml yaml(file);
   VehicleOptions vehicle;
-  strict_files::OptionList list;
-  vehicle.describe(list);
+  const auto list = strict_files::OptionList::of(vehicle);
   const std::vector<std::string> names = list.names();
   std::set<std::string> known(names.begin(), names.end());
   known.insert("footprint");

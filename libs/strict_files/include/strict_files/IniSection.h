@@ -1,6 +1,10 @@
 #pragma once
 #include <strict_files/OptionList.h>
+#include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
 
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -44,16 +48,21 @@ class IniSection {
   std::vector<std::string> m_known;
 };
 
-/** Reads a section that holds the options of a struct and nothing else, and checks them.
+/** Reads a section that holds these options and nothing else.
  * \param source as for IniSection
  * \throw std::runtime_error naming section, key and value. */
-template <class Source, class Options>
-void readSection(const Source& source, const std::string& section, Options& options) {
-  OptionList list;
-  options.describe(list);
+template <class Source>
+IniSection readOptions(const Source& source, const std::string& section, const OptionList& list) {
   IniSection ini(source, section);
   ini.read(list);
   ini.finish();
+  return ini;
+}
+
+/** The same for the options of a struct, which are checked, too. */
+template <class Source, class Options>
+void readSection(const Source& source, const std::string& section, Options& options) {
+  const IniSection ini = readOptions(source, section, OptionList::of(options));
   try {
     options.validate();
   } catch (const std::invalid_argument& e) {
@@ -78,6 +87,23 @@ void checkSections(const Source& source, const std::vector<std::string>& known) 
   for (const std::string& section : sections) {
     source.getAllKeys(section, keys);
     if (!section.empty() || !keys.empty()) checkSection(section, known);
+  }
+}
+
+/** Reads an .ini file: \p read is called with it, as an Ini.
+ * \tparam Ini mrpt::config::CConfigFile
+ * \throw std::runtime_error naming the file: it cannot be read, or what \p read throws. */
+template <class Ini, class Read>
+void readIniFile(const std::filesystem::path& file, const Read& read) {
+  if (!std::filesystem::is_regular_file(file) || !std::ifstream(file))
+    throw std::runtime_error(file.string() + ": cannot be read");
+  try {
+    checkIniText(readText(file));
+    Ini ini(file.string());
+    ini.discardSavingChanges();
+    read(ini);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(file.string() + ": " + messageOf(e));
   }
 }
 

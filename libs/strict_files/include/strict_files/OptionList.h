@@ -66,6 +66,14 @@ struct Option {
  * each other: that is for the struct's validate(), which begins with checkOptions(). */
 class OptionList {
  public:
+  /** Those of structs that describe themselves. */
+  template <class... Structs>
+  static OptionList of(Structs&... structs) {
+    OptionList list;
+    (structs.describe(list), ...);
+    return list;
+  }
+
   /** double, float, whole numbers, std::optional<double> ("none" without), bool, std::string,
    * Eigen::Vector3d ("x, y, z"), and enumerations with choicesOf(). */
   template <class T>
@@ -136,9 +144,7 @@ void checkAll(const OptionList& list, const std::string& owner);
 template <class T>
 void checkOptions(const T& options, const std::string& owner) {
   T copy = options;
-  OptionList list;
-  copy.describe(list);
-  checkAll(list, owner);
+  checkAll(OptionList::of(copy), owner);
 }
 /** For what options say about each other, in validate().
  * \param option "Struct::option", for errors

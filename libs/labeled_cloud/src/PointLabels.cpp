@@ -1,4 +1,4 @@
-#include "PointSources.h"
+#include "PointLabels.h"
 
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <mrpt/maps/CColouredPointsMap.h>
