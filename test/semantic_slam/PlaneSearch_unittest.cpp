@@ -109,3 +109,44 @@ TEST(PlaneSearch, findsNoLessThanTryingEverything) {
     EXPECT_FALSE(search.find(scan, guess, window, share + 0.01)) << seed;
   }
 }
+
+namespace {
+
+PlanePoints field(Uniform& uniform, int n, double half) {
+  PlanePoints points;
+  for (int i = 0; i < n; ++i) points.emplace_back(uniform(-half, half), uniform(-half, half));
+  return points;
+}
+
+/** What a robot sees within some meters. \param T x, y, heading */
+PlanePoints seenFrom(const Eigen::Vector3d& T, const PlanePoints& points, double range) {
+  PlanePoints seen;
+  for (const Eigen::Vector2d& p : points)
+    if ((p - T.head<2>()).norm() < range)
+      seen.push_back(Eigen::Rotation2Dd(-T[2]) * (p - T.head<2>()));
+  return seen;
+}
+
+constexpr double kHalf = 75;
+const PlaneSearch::Window kEverywhere{kHalf, M_PI};
+
+}  // namespace
+
+TEST(PlaneSearch, findsARobotThatMayBeAnywhereInALargePlace) {
+  Uniform uniform(1);
+  const PlanePoints trees = field(uniform, 600, kHalf);
+  const Eigen::Vector3d truth(-31, 44, 96 * kStep);
+  const PlanePoints scan = seenFrom(truth, trees, 20);
+  const auto found = PlaneSearch(trees, kCell).find(scan, {0, 0, 0}, kEverywhere, 0.65);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->head<2>() - truth.head<2>()).norm(), 2 * kCell);
+  EXPECT_NEAR(std::remainder((*found)[2] - truth[2], 2 * M_PI), 0, kStep);
+}
+
+/** Where the robot is would be found, but after longer than anybody waits. */
+TEST(PlaneSearch, givesUpWhereMuchIsAlike) {
+  Uniform uniform(2);
+  const PlanePoints bushes = field(uniform, 20000, kHalf);
+  const PlanePoints scan = seenFrom({-31, 44, 96 * kStep}, bushes, 12);
+  EXPECT_FALSE(PlaneSearch(bushes, kCell).find(scan, {0, 0, 0}, kEverywhere, 0.65));
+}

@@ -13,6 +13,9 @@ constexpr int kBest = 255;
 /** A point is blurred by a Gaussian of so many cells, and drawn to twice that. */
 constexpr double kBlur = 1.2;
 constexpr int kReach = 3;
+/** Points that one search looks up at most, beside those at the coarsest level: where much is alike
+ * (trees, cars) and nothing fits, bounds exclude next to nothing. */
+constexpr std::size_t kMostLooks = 300'000'000;
 /** A column of a cloud reaches from low to high if it is so many cells high. */
 constexpr float kUpright = 3;
 
@@ -43,7 +46,7 @@ PlanePoints uprightPoints(const LabeledCloud& cloud, bool isPlanar, double cell)
   return points;
 }
 
-PlaneSearch::PlaneSearch(const PlanePoints& points, double cell) : m_cell(cell), m_levels(kLevels) {
+PlaneSearch::PlaneSearch(const PlanePoints& points, double cell) : m_cell(cell) {
   if (points.empty()) return;
   Eigen::Vector2d high = points.front();
   m_corner = points.front();
@@ -54,6 +57,10 @@ PlaneSearch::PlaneSearch(const PlanePoints& points, double cell) : m_cell(cell),
   m_corner.array() -= (kReach + 1) * cell;  // one more, for rounding
   m_width = cellOf(high.x() - m_corner.x(), cell) + kReach + 2;
   m_height = cellOf(high.y() - m_corner.y(), cell) + kReach + 2;
+  // Squares of the coarsest level are a 32nd of the grid at least: there each is looked at.
+  std::size_t levels = kLevels;
+  for (int edge = 1024; edge < std::max(m_width, m_height); edge *= 2) ++levels;
+  m_levels.resize(levels);
   for (auto& level : m_levels)
     level.assign(static_cast<std::size_t>(m_width) * static_cast<std::size_t>(m_height), 0);
   drawPoints(points);
@@ -77,7 +84,7 @@ void PlaneSearch::drawPoints(const PlanePoints& points) {
 }
 
 void PlaneSearch::pool() {
-  for (int level = 1; level < kLevels; ++level) {
+  for (int level = 1; level < numLevels(); ++level) {
     const int step = 1 << (level - 1);
     for (int y = 0; y < m_height; ++y)
       for (int x = 0; x < m_width; ++x) {
@@ -117,9 +124,11 @@ class PlaneSearch::Search {
     }
   }
 
-  /** \param least a score that has to be exceeded \return with a level of -1 if there is none */
+  /** \param least a score that has to be exceeded \return with a level of -1 if there is none, or
+   * if that takes too long to find out */
   Candidate best(int least) {
     Candidate best{-1, 0, 0, 0, least};
+    std::size_t left = kMostLooks / (4 * m_cells.front().size());  // of expansions
     for (std::vector<Candidate> open = coarsest(); !open.empty();) {
       const Candidate c = open.back();
       open.pop_back();
@@ -128,6 +137,7 @@ class PlaneSearch::Search {
         best = c;
         continue;
       }
+      if (left-- == 0) return {-1, 0, 0, 0, least};
       expand(c, best.score, open);
     }
     return best;
@@ -141,11 +151,11 @@ class PlaneSearch::Search {
 
   std::vector<Candidate> coarsest() const {
     std::vector<Candidate> open;
-    constexpr int kTop = kLevels - 1, kEdge = 1 << kTop;
+    const int top = m_grid.numLevels() - 1, edge = 1 << top;
     for (int a = 0; a <= 2 * m_angles; ++a)
-      for (int x = -m_radius; x <= m_radius; x += kEdge)
-        for (int y = -m_radius; y <= m_radius; y += kEdge)
-          open.push_back({kTop, a, x, y, scoreOf(kTop, a, x, y)});
+      for (int x = -m_radius; x <= m_radius; x += edge)
+        for (int y = -m_radius; y <= m_radius; y += edge)
+          open.push_back({top, a, x, y, scoreOf(top, a, x, y)});
     std::stable_sort(open.begin(), open.end(), isWorse);
     return open;
   }

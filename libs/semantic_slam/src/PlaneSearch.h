@@ -40,7 +40,8 @@ class PlaneSearch {
   };
   class Search;
 
-  static constexpr int kLevels = 6;
+  static constexpr int kLevels = 6;  ///< at least
+  int numLevels() const { return static_cast<int>(m_levels.size()); }
   void drawPoints(const PlanePoints& points);
   void pool();
   /** Highest score in the square of 2^level cells that begins at a cell. */

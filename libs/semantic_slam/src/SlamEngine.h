@@ -182,6 +182,7 @@ class SlamEngine {
   std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece
   std::optional<PoseEdge> m_pendingPiece;
   double m_nextJoin = 0;                        ///< m of the piece's way
+  int m_notFound = 0;                           ///< pieces before it, one after the other
   Reference m_reference;                        ///< none: there is no map
   Matrix6 m_mostOfReference = Matrix6::Zero();  ///< information, at most
 };

@@ -9,10 +9,12 @@ namespace {
 /** Share of a stretch's points after a loss that fit what was seen before it. Stretches that follow
  * each other have .6 to 1 (1 in 20 less than .7), places that do not .1 to .6. */
 constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
-/** Share of the highest score of a place that is searched everywhere. */
-constexpr double kFoundScore = 0.5;
-/** A piece is searched when it is so long, m, and each time that it grew by this factor. */
-constexpr double kFirstLook = 4, kNextLook = 1.4;
+/** Share of the highest score of a place that is searched everywhere. Right places have .7 to .9,
+ * wrong ones up to .7. */
+constexpr double kFoundScore = 0.65;
+/** A piece is searched when it is so long, m, and each time that it grew by this factor, or by the
+ * other one if it was not found. */
+constexpr double kFirstLook = 4, kNextLook = 1.4, kNotFound = 2;
 /** Keyframes that are searched at most; points of them; edge of the search's cells, of a loop's. */
 constexpr std::size_t kSearched = 40, kMostPoints = 400;
 constexpr double kCells = 2;
@@ -49,8 +51,10 @@ bool SlamEngine::holdsAcross(std::size_t first) const {
 
 void SlamEngine::tearAt(std::size_t first) {
   ++m_report.torn;
+  // Where pieces are not found, the next ones hardly are, and each look takes long.
+  m_notFound = m_piece ? m_notFound + 1 : 0;
   m_piece = first;
-  m_nextJoin = kFirstLook;
+  m_nextJoin = kFirstLook * std::pow(kNotFound, m_notFound);
   m_pendingPiece.reset();
   m_pendingLoops.clear();
   const auto leadsAcross = [first](const PoseEdge& e) {
@@ -80,8 +84,8 @@ bool SlamEngine::joinPiece() {
   const std::size_t newest = m_keyframes.size() - 1;
   const double way = m_keyframes[newest].way - m_keyframes[*m_piece].way;
   if (way < m_nextJoin) return false;
-  m_nextJoin = kNextLook * way;
   const auto found = findPiece();
+  m_nextJoin = (found ? kNextLook : kNotFound) * way;
   if (!found) return false;
   const Pose T_moved = T_map_b(*found) * m_poses[newest].inverse();
   const double carried =
