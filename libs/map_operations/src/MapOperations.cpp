@@ -119,7 +119,7 @@ class CoarseCursor {
 void copyTo(SemanticOcTree& copy, const SemanticOcTree& map) {
   TreeBuilder::checkTarget(copy, map);
   const VoxelBox all;
-  TreeBuilder::fill(copy, CropCursor(map.numClasses(), all, map.root(), Cell()),
+  TreeBuilder::fill(copy, CropCursor(map.numClasses(), all, map.root(), Cube()),
                     TreeBuilder::Merge::Never);
 }
 
