@@ -12,9 +12,10 @@ constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
 /** Share of the highest score of a place that is searched everywhere. Right places have .7 to .9,
  * wrong ones up to .7. */
 constexpr double kFoundScore = 0.65;
-/** A piece is searched when it is so long, m, and each time that it grew by this factor, or by the
- * other one if it was not found. */
-constexpr double kFirstLook = 4, kNextLook = 1.4, kNotFound = 2;
+/** A piece is searched when it is so long, m, and each time that it grew by the factor; first when
+ * twice as long for each of the last pieces that was not found, of so many. */
+constexpr double kFirstLook = 4, kNextLook = 1.4;
+constexpr int kMostNotFound = 3;
 /** Keyframes that are searched at most; points of them; edge of the search's cells, of a loop's. */
 constexpr std::size_t kSearched = 40, kMostPoints = 400;
 constexpr double kCells = 2;
@@ -54,7 +55,7 @@ void SlamEngine::tearAt(std::size_t first) {
   // Where pieces are not found, the next ones hardly are, and each look takes long.
   m_notFound = m_piece ? m_notFound + 1 : 0;
   m_piece = first;
-  m_nextJoin = kFirstLook * std::pow(kNotFound, m_notFound);
+  m_nextJoin = std::ldexp(kFirstLook, std::min(m_notFound, kMostNotFound));
   m_pendingPiece.reset();
   m_pendingLoops.clear();
   const auto leadsAcross = [first](const PoseEdge& e) {
@@ -84,8 +85,8 @@ bool SlamEngine::joinPiece() {
   const std::size_t newest = m_keyframes.size() - 1;
   const double way = m_keyframes[newest].way - m_keyframes[*m_piece].way;
   if (way < m_nextJoin) return false;
+  m_nextJoin = kNextLook * way;
   const auto found = findPiece();
-  m_nextJoin = (found ? kNextLook : kNotFound) * way;
   if (!found) return false;
   const Pose T_moved = T_map_b(*found) * m_poses[newest].inverse();
   const double carried =
