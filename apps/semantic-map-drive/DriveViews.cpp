@@ -26,11 +26,6 @@ constexpr Stroke kPath{kPathColor, 2, 2}, kTrack{{20, 20, 20}, 2, 2},
     kOtherTrack{{20, 60, 220}, 2, 2};
 constexpr Arrow kStart{{40, 150, 40}, 18, 2}, kGoal{kGoalColor, 18, 2};
 
-Eigen::AlignedBox2d around(const TPose2D& pose, double meters) {
-  const Eigen::Vector2d place(pose.x, pose.y);
-  return {place.array() - meters, place.array() + meters};
-}
-
 void drawTrack(MapCanvas& canvas, const DriveRecord& record, const std::string& name,
                const Stroke& stroke) {
   std::vector<Eigen::Vector2d> line;
@@ -70,12 +65,12 @@ std::string caption(const DriveLoop& loop) {
   const DriveRecord& record = loop.record();
   const double speed = record.rows.empty() ? 0 : record.rows.back().speed;
   return mrpt::format("%.0f s  %.0f m  %.1f m/s  to: %s", loop.time(), record.length, speed,
-                      nameOf(loop.guide().target()));
+                      loop.explores() ? "a place to look from" : nameOf(loop.guide().target()));
 }
 
-DrivePicture::DrivePicture(const TPose2D& start, const TPose2D& goal, int longerEdge)
-    : m_region(around(start, 12)), m_longerEdge(longerEdge) {
-  m_region.extend(around(goal, 12));
+Eigen::AlignedBox2d around(const TPose2D& pose, double meters) {
+  const Eigen::Vector2d place(pose.x, pose.y);
+  return {place.array() - meters, place.array() + meters};
 }
 
 void DrivePicture::include(const DriveRecord& record) {
@@ -100,7 +95,7 @@ MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
   drawTrack(canvas, loop.record(), "driven", kTrack);
   drawRoute(canvas, loop.controller().tracker());
   drawEnd(canvas, "start", loop.start(), kStart);
-  drawEnd(canvas, "goal", loop.goal(), kGoal);
+  if (!loop.explores()) drawEnd(canvas, "goal", loop.goal(), kGoal);
   drawRobot(canvas, loop);
   return canvas;
 }
@@ -112,13 +107,11 @@ cv::Mat DrivePicture::frame(const DriveLoop& loop) const {
   std::vector<std::size_t> all(classes.size() + 1, 1);
   all[0] = 0;
   auto legend = map_pictures::classLegend(classes, all);
-  for (const map_pictures::LegendEntry& entry :
-       std::initializer_list<map_pictures::LegendEntry>{{"driven", kTrack},
-                                                        {"path", kPath},
-                                                        {"start", kStart},
-                                                        {"goal", kGoal},
-                                                        {"robot", kRobotColor}})
-    legend.push_back(entry);
+  legend.push_back({"driven", kTrack});
+  legend.push_back({"path", kPath});
+  legend.push_back({"start", kStart});
+  if (!loop.explores()) legend.push_back({"goal", kGoal});
+  legend.push_back({"robot", kRobotColor});
   cv::Mat picture;
   cv::copyMakeBorder(canvas.picture(), picture, 0, kBelow, 0, 0, cv::BORDER_CONSTANT,
                      map_pictures::bgr(map_pictures::kPaper));

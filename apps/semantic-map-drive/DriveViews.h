@@ -18,13 +18,15 @@ constexpr double kCutAbove = 2.5;
 
 /** Seconds, meters, speed, and where to. */
 std::string caption(const DriveLoop& loop);
+Eigen::AlignedBox2d around(const mrpt::math::TPose2D& pose, double meters);
 
 /** The drive from above: the robot's map in its classes' colors, start and goal, what is left of
  * the path, the driven track, and the robot. One picture is like the other in place and size. */
 class DrivePicture {
  public:
-  /** \param longerEdge of the map's part, at least so many pixels */
-  DrivePicture(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, int longerEdge);
+  /** \param region of the world, m \param longerEdge of it, at least so many pixels */
+  DrivePicture(const Eigen::AlignedBox2d& region, int longerEdge)
+      : m_region(region), m_longerEdge(longerEdge) {}
   /** Makes room for a drive's track, too: another place from here on. */
   void include(const DriveRecord& record);
 

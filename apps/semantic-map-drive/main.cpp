@@ -189,8 +189,8 @@ class DriveProgram {
         m_weights(weightsOf(cli)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(cli.start, goalOf(cli), 960),
-        m_whole(cli.start, goalOf(cli), 1200) {
+        m_picture(regionOf(cli, m_scene.world), 960),
+        m_whole(regionOf(cli, m_scene.world), 1200) {
     m_config.sensors.seed = cli.seed;
   }
 
@@ -261,6 +261,12 @@ class DriveProgram {
     return record;
   }
 
+  /** Nobody knows where it goes to look around. */
+  static Eigen::AlignedBox2d regionOf(const Cli& cli, const synthetic_world::World& world) {
+    constexpr double kRoom = 12;  // m
+    if (cli.explore) return around({0, 0, 0}, world.terrain().halfExtent());
+    return around(cli.start, kRoom).merged(around(cli.goal, kRoom));
+  }
   static mrpt::math::TPose2D goalOf(const Cli& cli) { return cli.explore ? cli.start : cli.goal; }
   static std::optional<tree_abstraction::AbstractionWeights> weightsOf(const Cli& cli) {
     if (cli.weights.empty()) return {};

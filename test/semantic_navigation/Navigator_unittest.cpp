@@ -264,6 +264,17 @@ TEST(Navigator, exploresUntilItIsEnoughAndSaysSo) {
   EXPECT_NE(robot.navigator.reason().find("left within reach"), std::string::npos);
 }
 
+TEST(Navigator, saysWhatIsLeftWhenExploringIsEnded) {
+  NavigatorOptions options = someOptions();
+  options.explore.sensor = {8, -45, 10, 360};
+  Robot robot(options);
+  robot.navigator.explore({});
+  ASSERT_EQ(robot.drive(3), Status::Driving);
+  robot.navigator.endExploring("the time is over");
+  EXPECT_EQ(robot.navigator.reason().rfind("the time is over; ", 0), 0U)
+      << robot.navigator.reason();
+}
+
 TEST(Navigator, exploresNoFartherThanItsBudgetAndThenDrivesToAGoal) {
   NavigatorOptions options = someOptions();
   options.explore.sensor = {8, -45, 10, 360};

@@ -237,6 +237,7 @@ void DriveLoop::begin() {
 void DriveLoop::goOn(const TPose2D& goal) {
   m_start = m_robot.state().pose;
   m_goal = goal;
+  m_explores = false;
   begin();
 }
 
@@ -339,6 +340,12 @@ bool DriveLoop::end(DriveEnd end, const std::string& reason) {
   return true;
 }
 
+bool DriveLoop::endEarly(DriveEnd how, const std::string& why) {
+  m_navigator.endExploring(why);
+  const std::string reason = m_navigator.reason();
+  return end(how, reason.empty() ? why : reason);
+}
+
 bool DriveLoop::endAtGoal() {
   const TPose2D &p = m_robot.state().pose, &goal = guide().goal();
   const double off = std::hypot(p.x - goal.x, p.y - goal.y);
@@ -354,8 +361,9 @@ bool DriveLoop::isOver() {
   if (status == Status::Arrived || status == Status::Nearest) return endAtGoal();
   if (status == Status::Unreachable) return end(DriveEnd::Unreachable, m_navigator.reason());
   if (status == Status::Explored) return end(DriveEnd::Explored, m_navigator.reason());
-  if (m_stop && m_stop()) return end(DriveEnd::Stopped, "it was stopped on the way");
-  return m_time - m_began >= m_config.timeLimit && end(DriveEnd::TimeLimit, "the time is over");
+  if (m_stop && m_stop()) return endEarly(DriveEnd::Stopped, "it was stopped on the way");
+  return m_time - m_began >= m_config.timeLimit &&
+         endEarly(DriveEnd::TimeLimit, "the time is over");
 }
 
 }  // namespace simulated_drive

@@ -109,7 +109,9 @@ class DriveLoop {
   /** Looks around instead of driving to the goal, see Navigator::explore(). */
   void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights) {
     m_navigator.explore(weights);
+    m_explores = true;
   }
+  bool explores() const { return m_explores; }
   double leftToSee(double x, double y) { return m_navigator.leftToSee(x, y); }
   void keepOriginals() { m_sensors = SimulatedSensors(m_config.sensors, true); }
   const DriveRecord& run();
@@ -139,6 +141,7 @@ class DriveLoop {
   bool isOver();
   bool endAtGoal();
   bool end(DriveEnd end, const std::string& reason);
+  bool endEarly(DriveEnd end, const std::string& why);
   double groundZ() const;
   void note(const std::string& stage, double milliseconds);
 
@@ -156,6 +159,7 @@ class DriveLoop {
   DriveRecord m_record;
   std::vector<DriveObserver*> m_observers;
   std::function<bool()> m_stop;
+  bool m_explores = false;
   double m_time = 0, m_lookedAt = -1e9, m_began = 0;
 };
 

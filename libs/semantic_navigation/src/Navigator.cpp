@@ -365,8 +365,9 @@ void Navigator::conclude(const std::string& why) {
   m_guidesNext = false;
 }
 
-void Navigator::endExploring() {
-  if (m_views && m_conclusion.empty()) conclude("it was ended; ");
+void Navigator::endExploring(const std::string& why) {
+  waitedFor();
+  if (m_views && m_conclusion.empty()) conclude(why + "; ");
 }
 
 /** What of the map is in the way, in the robot's frame. */
@@ -404,8 +405,8 @@ Navigator::Status Navigator::status() const {
 }
 
 std::string Navigator::reason() const {
+  if (!m_conclusion.empty()) return m_conclusion;
   const Status now = status();
-  if (now == Status::Explored) return m_conclusion;
   if (now == Status::Nearest) return m_guide->refusal()->reason;
   return now == Status::Unreachable ? m_guide->reason() : std::string();
 }

@@ -90,8 +90,8 @@ class Navigator {
   /** Explores with other options from now on. */
   void explore(const std::optional<tree_abstraction::AbstractionWeights>& weights,
                const semantic_driving::ExploreOptions& options);
-  /** Exploring is over, if it was not. */
-  void endExploring();
+  /** Exploring is over, if it was not. \param why is part of reason(). Waits as mapper(). */
+  void endExploring(const std::string& why = "it was ended");
   /** What looking at a column (map frame, meters) may still tell, nats; 0 without exploring. */
   double leftToSee(double x, double y);
   /** Where the robot is now. */
@@ -107,7 +107,7 @@ class Navigator {
   Status status() const;
   bool isDriving() const { return status() == Status::Driving; }
   bool hasArrived() const { return status() == Status::Arrived; }
-  /** Why it is not at the goal, and will not be. */
+  /** Why it is not at the goal, and will not be; what exploring that is over leaves. */
   std::string reason() const;
   /** Where the robot is in the map. */
   const semantic_driving::DriveState& state() const { return m_state; }
