@@ -7,6 +7,13 @@
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
+#include <mrpt_compat/Release.h>
+#if MSO_MRPT_AT_LEAST(2, 14, 0)
+#include <mrpt/maps/CPointsMapXYZIRT.h>
+#endif
+#if MSO_MRPT_AT_LEAST(2, 15, 0)
+#include <mrpt/maps/CGenericPointsMap.h>
+#endif
 
 #include <algorithm>
 #include <sstream>
@@ -88,6 +95,66 @@ TEST(ColoredClouds, haveTheClassesOfTheTablesColorsUnlessTheyAreAPhotographs) {
   add(4, 128, 64, 130);
   EXPECT_EQ(classes(), std::vector<semantic_types::ClassId>());
 }
+
+#if MSO_MRPT_AT_LEAST(2, 14, 0)
+
+TEST(PointClouds, haveTheTimesOfTheirPoints) {
+  auto map = mrpt::maps::CPointsMapXYZIRT::Create();
+  map->resize_XYZIRT(3, false, false, true);
+  for (int i = 0; i < 3; ++i) {
+    map->setPointFast(i, i == 1 ? NAN : i + 1.0f, 0, 0);
+    (*map->getPointsBufferRef_timestamp())[i] = 0.01f * i;
+  }
+  mrpt::obs::CObservationPointCloud obs;
+  obs.pointcloud = map;
+  EXPECT_EQ(convert(obs).times, (std::vector<float>{0, 0.02f}));
+}
+
+#endif
+#if MSO_MRPT_AT_LEAST(2, 15, 0)
+
+TEST(PointClouds, haveTheClassesOfTheirFieldLabel) {
+  auto map = mrpt::maps::CGenericPointsMap::Create();
+  map->registerField_uint16("label");
+  map->registerField_float("t");
+  const auto add = [&map](float x, std::uint16_t label, float time) {
+    map->insertPointFast(x, 0, 0);
+    map->insertPointField_uint16("label", label);
+    map->insertPointField_float("t", time);
+  };
+  add(1, 40, 0.25f);
+  add(NAN, 10, 0);
+  add(2, 0, 0.5f);
+  add(3, 10, 0.75f);
+  semantic_types::ClassTable table;
+  table.add("road", {128, 64, 129});
+  table.add("car", {245, 150, 100});
+  table.fold(40, 1);
+  table.fold(10, 2);
+  mrpt::obs::CObservationPointCloud obs;
+  obs.pointcloud = map;
+  const auto scan = *ScanConverter(table).convert(obs);
+  EXPECT_EQ(scan.cloud.classes, (std::vector<ClassId>{1, 0, 2}));
+  EXPECT_EQ(scan.times, (std::vector<float>{0.25f, 0.5f, 0.75f}));
+  add(4, 41, 0);
+  EXPECT_THROW(ScanConverter(table).convert(obs), std::runtime_error);
+}
+
+TEST(PointClouds, haveTheClassesOfTheColorsAmongTheirFields) {
+  auto map = mrpt::maps::CGenericPointsMap::Create();
+  for (const char* name : {"color_r", "color_g", "color_b"}) map->registerField_uint8(name);
+  map->insertPointFast(1, 0, 0);
+  map->insertPointField_uint8("color_r", 245);
+  map->insertPointField_uint8("color_g", 150);
+  map->insertPointField_uint8("color_b", 100);
+  semantic_types::ClassTable table;
+  table.add("car", {245, 150, 100});
+  mrpt::obs::CObservationPointCloud obs;
+  obs.pointcloud = map;
+  EXPECT_EQ(ScanConverter(table).convert(obs)->cloud.classes, (std::vector<ClassId>{1}));
+}
+
+#endif
 
 TEST(UnlabeledClouds, withoutAllTheirCoordinatesAreRefused) {
   mrpt::obs::CObservationVelodyneScan scan;

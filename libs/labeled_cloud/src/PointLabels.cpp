@@ -1,11 +1,14 @@
 #include "PointLabels.h"
 
 #include <labeled_cloud/CObservationLabeledCloud.h>
-#include <mrpt/maps/CColouredPointsMap.h>
+#include <mrpt/maps/CPointsMap.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
+#include <mrpt_compat/Maps.h>
+#include <strict_files/OptionList.h>
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
@@ -13,6 +16,7 @@
 
 namespace labeled_cloud {
 
+using mrpt::maps::CPointsMap;
 using mrpt::obs::CObservation;
 using mrpt::obs::CObservation2DRangeScan;
 using mrpt::obs::CObservationPointCloud;
@@ -35,17 +39,12 @@ Points zip(const Xs& xs, const Xs& ys, const Xs& zs) {
   return points;
 }
 
-Points pointsOf(const CObservationPointCloud& observation) {
-  if (!observation.pointcloud) throw std::invalid_argument("it holds no point cloud");
-  const auto& cloud = *observation.pointcloud;
-  return zip(cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(),
-             cloud.getPointsBufferRef_z());
-}
-
-Points pointsOf(const CObservation2DRangeScan& scan) {
+NamedCloud cloudOf(const CObservation2DRangeScan& scan) {
   const std::size_t beams = scan.getScanSize();
   const double turn = scan.rightToLeft ? 1 : -1;
-  Points points(beams, Eigen::Vector3f::Zero());
+  NamedCloud named;
+  Points& points = named.cloud.points;
+  points.assign(beams, Eigen::Vector3f::Zero());
   for (std::size_t i = 0; i < beams; ++i) {
     const double range = scan.getScanRange(i);
     if (!scan.getScanRangeValidity(i) || range >= scan.maxRange) continue;
@@ -53,36 +52,62 @@ Points pointsOf(const CObservation2DRangeScan& scan) {
     const double angle = turn * scan.aperture * share;
     points[i] = Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), 0).cast<float>();
   }
-  return points;
+  return named;
 }
 
-std::vector<Color> colorsOf(const CObservation&) { return {}; }
+/** Numbers for each of so many points, or none.
+ * \throw std::invalid_argument some points have none: who filled the cloud forgot the field */
+std::vector<double> field(const CPointsMap& cloud, const std::string& name) {
+  auto numbers = mrpt_compat::pointField(cloud, name);
+  if (numbers.empty() || numbers.size() == cloud.size()) return numbers;
+  throw std::invalid_argument("its field '" + name + "' has " + std::to_string(numbers.size()) +
+                              " values for " + std::to_string(cloud.size()) + " points");
+}
 
-std::vector<Color> colorsOf(const CObservationPointCloud& observation) {
-  std::vector<Color> colors;
-  const auto* cloud =
-      dynamic_cast<const mrpt::maps::CColouredPointsMap*>(observation.pointcloud.get());
-  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255 * share)); };
-  for (std::size_t i = 0; cloud && i < cloud->size(); ++i) {
-    float r = 0, g = 0, b = 0;
-    cloud->getPointColor(i, r, g, b);
-    colors.push_back({byte(r), byte(g), byte(b)});
+std::vector<Color> colorsOf(const CPointsMap& cloud) {
+  const auto colors = [&cloud](const char* r, const char* g, const char* b, double scale) {
+    const auto rs = field(cloud, r), gs = field(cloud, g), bs = field(cloud, b);
+    const auto byte = [scale](double value) {
+      return static_cast<std::uint8_t>(std::lround(std::clamp(scale * value, 0.0, 255.0)));
+    };
+    std::vector<Color> all;
+    if (!rs.empty() && !gs.empty() && !bs.empty())
+      for (std::size_t i = 0; i < rs.size(); ++i)
+        all.push_back({byte(rs[i]), byte(gs[i]), byte(bs[i])});
+    return all;
+  };
+  auto bytes = colors("color_r", "color_g", "color_b", 1);
+  return bytes.empty() ? colors("color_rf", "color_gf", "color_bf", 255) : bytes;
+}
+
+std::vector<std::uint32_t> labelsOf(const CPointsMap& cloud) {
+  std::vector<std::uint32_t> labels;
+  for (const double label : field(cloud, "label")) {
+    if (!(label >= 0 && label <= 4294967295.0 && label == std::floor(label)))
+      throw std::invalid_argument("its label " + strict_files::textOf(label) + " is no class id");
+    labels.push_back(static_cast<std::uint32_t>(label));
   }
-  return colors;
+  return labels;
 }
 
-/** An observation that says where something is, and perhaps in which color. */
-template <typename Observation>
-NamedCloud cloudOf(const Observation& observation) {
+NamedCloud cloudOf(const CObservationPointCloud& observation) {
+  if (!observation.pointcloud) throw std::invalid_argument("it holds no point cloud");
+  const CPointsMap& cloud = *observation.pointcloud;
   NamedCloud named;
-  named.cloud.points = pointsOf(observation);
-  named.colors = colorsOf(observation);
+  named.cloud.points =
+      zip(cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(), cloud.getPointsBufferRef_z());
+  named.colors = colorsOf(cloud);
+  named.rawIds = labelsOf(cloud);
+  for (const double time : field(cloud, "t")) {
+    if (!std::isfinite(time)) throw std::invalid_argument("its times are not all finite");
+    named.times.push_back(static_cast<float>(time));
+  }
   return named;
 }
 
 NamedCloud cloudOf(const CObservationLabeledCloud& observation) {
   observation.validate();
-  return {observation.cloud, observation.classNames, {}, observation.times};
+  return {observation.cloud, observation.classNames, {}, {}, observation.times};
 }
 
 NamedCloud cloudOf(const CObservationVelodyneScan& observation) {

@@ -228,6 +228,9 @@ std::vector<ClassId> classesOf(const std::vector<semantic_types::Color>& colors,
 }  // namespace
 
 void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
+  const bool zeroIsNone = m_table.folds().count(0) == 0;
+  for (const std::uint32_t id : named.rawIds)
+    named.cloud.classes.push_back(id == 0 && zeroIsNone ? kNoClass : m_table.fromRaw(id));
   if (named.cloud.classes.empty() && named.cloud.probabilities.empty())
     named.cloud.classes = classesOf(named.colors, m_table);
   const auto& from = named.cloud;

@@ -67,6 +67,8 @@ struct NamedCloud {
   /** Colors of points without classes, one for each or none: they stand for classes if each is a
    * color of the user's table, or black, which is no class. */
   std::vector<semantic_types::Color> colors;
+  /** Raw ids of the user's class table, one for each point; none: the cloud's own classes count. */
+  std::vector<std::uint32_t> rawIds = {};
   /** As LabeledScan::times. */
   std::vector<float> times = {};
 };
@@ -117,8 +119,10 @@ struct ScanConverterOptions {
  *   those of the depth image.
  * - CObservationLabeledCloud: as it is. Where it names its classes, they are found by name in the
  *   class table; otherwise its class ids are those of the table.
- * - CObservationPointCloud (with classes if its colors are theirs), CObservationVelodyneScan,
- *   CObservation2DRangeScan: points without a class, which count for occupancy only.
+ * - CObservationPointCloud: its field "label" (MRPT 2.15) has raw ids of the class table, or its
+ *   colors are those of classes; otherwise its points have no class.
+ * - CObservationVelodyneScan, CObservation2DRangeScan: points without a class, which count for
+ *   occupancy only.
  * - What a PointSource that was added accepts.
  *
  * Externally stored data is loaded, and unloaded at the end. */

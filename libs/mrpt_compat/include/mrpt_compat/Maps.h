@@ -4,10 +4,15 @@
 #if MSO_MRPT_AT_LEAST(2, 11, 3)
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/maps/NearestNeighborsCapable.h>
+#endif
 
 #include <cstdint>
+#include <string>
 #include <vector>
-#endif
+
+namespace mrpt::maps {
+class CPointsMap;
+}
 
 /** CMetricMap has no boundingBox() before. */
 #if MSO_MRPT_AT_LEAST(2, 11, 3)
@@ -17,6 +22,11 @@
 #endif
 
 namespace mrpt_compat {
+
+/** What a cloud's points have under a name: one number for each point, or none. Colors between 0
+ * and 1 are "color_rf", "color_gf", "color_bf". Times, in seconds after the observation's, are "t"
+ * (MRPT 2.14). CGenericPointsMap has what its user registered (MRPT 2.15). */
+std::vector<double> pointField(const mrpt::maps::CPointsMap& cloud, const std::string& name);
 
 #if MSO_MRPT_AT_LEAST(2, 11, 3)
 /** What a map's factory function returns. */
