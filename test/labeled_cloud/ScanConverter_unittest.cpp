@@ -8,11 +8,10 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt_compat/Release.h>
-#if MSO_MRPT_AT_LEAST(2, 14, 0)
-#include <mrpt/maps/CPointsMapXYZIRT.h>
-#endif
 #if MSO_MRPT_AT_LEAST(2, 15, 0)
 #include <mrpt/maps/CGenericPointsMap.h>
+#elif MSO_MRPT_AT_LEAST(2, 14, 0)
+#include <mrpt/maps/CPointsMapXYZIRT.h>
 #endif
 
 #include <algorithm>
@@ -82,7 +81,10 @@ TEST(ColoredClouds, haveTheClassesOfTheTablesColorsUnlessTheyAreAPhotographs) {
   table.add("car", {245, 150, 100});
   auto map = mrpt::maps::CColouredPointsMap::Create();
   const auto add = [&map](float x, float r, float g, float b) {
-    map->insertPointRGB(x, 0, 0, r / 255, g / 255, b / 255);
+    const std::size_t i = map->size();
+    map->resize(i + 1);
+    map->setPointFast(i, x, 0, 0);
+    map->setPointColor_fast(i, r / 255, g / 255, b / 255);
   };
   add(1, 245, 150, 100);
   add(2, 0, 0, 0);
@@ -96,21 +98,6 @@ TEST(ColoredClouds, haveTheClassesOfTheTablesColorsUnlessTheyAreAPhotographs) {
   EXPECT_EQ(classes(), std::vector<semantic_types::ClassId>());
 }
 
-#if MSO_MRPT_AT_LEAST(2, 14, 0)
-
-TEST(PointClouds, haveTheTimesOfTheirPoints) {
-  auto map = mrpt::maps::CPointsMapXYZIRT::Create();
-  map->resize_XYZIRT(3, false, false, true);
-  for (int i = 0; i < 3; ++i) {
-    map->setPointFast(i, i == 1 ? NAN : i + 1.0f, 0, 0);
-    (*map->getPointsBufferRef_timestamp())[i] = 0.01f * i;
-  }
-  mrpt::obs::CObservationPointCloud obs;
-  obs.pointcloud = map;
-  EXPECT_EQ(convert(obs).times, (std::vector<float>{0, 0.02f}));
-}
-
-#endif
 #if MSO_MRPT_AT_LEAST(2, 15, 0)
 
 TEST(PointClouds, haveTheClassesOfTheirFieldLabel) {
@@ -152,6 +139,20 @@ TEST(PointClouds, haveTheClassesOfTheColorsAmongTheirFields) {
   mrpt::obs::CObservationPointCloud obs;
   obs.pointcloud = map;
   EXPECT_EQ(ScanConverter(table).convert(obs)->cloud.classes, (std::vector<ClassId>{1}));
+}
+
+#elif MSO_MRPT_AT_LEAST(2, 14, 0)
+
+TEST(PointClouds, haveTheTimesOfTheirPoints) {
+  auto map = mrpt::maps::CPointsMapXYZIRT::Create();
+  map->resize_XYZIRT(3, false, false, true);
+  for (int i = 0; i < 3; ++i) {
+    map->setPointFast(i, i == 1 ? NAN : i + 1.0f, 0, 0);
+    (*map->getPointsBufferRef_timestamp())[i] = 0.01f * i;
+  }
+  mrpt::obs::CObservationPointCloud obs;
+  obs.pointcloud = map;
+  EXPECT_EQ(convert(obs).times, (std::vector<float>{0, 0.02f}));
 }
 
 #endif
