@@ -7,6 +7,7 @@
 
 #include "PaintedPlanner.h"
 #include "PlainDrives.h"
+#include "TemporaryFolder.h"
 
 using namespace plain_drives;
 
