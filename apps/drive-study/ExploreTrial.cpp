@@ -162,9 +162,7 @@ class Glide {
         cloud.points.emplace_back(x, y, m_world.groundHeight(wx, wy) - z() - 1.001);
         cloud.classes.push_back(m_world.groundClass(wx, wy));
       }
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() << m_pose.x, m_pose.y, z() + 1;
-    m_map.insert(cloud, T);
+    m_map.insert(cloud, Eigen::Isometry3d(Eigen::Translation3d(m_pose.x, m_pose.y, z() + 1)));
     m_planner.update();
   }
 

@@ -234,7 +234,7 @@ fs::path CompressPanel::save(const fs::path& folder) const {
 }
 
 using map_view::LiveCompression;
-using Balance = map_view::InformationTree::Balance;
+using Balance = map_view::LiveCompression::Balance;
 
 namespace {
 
@@ -244,7 +244,7 @@ constexpr int kTableWidth = 280;
 std::string thousandths(double nats) { return mrpt::format("%.1f", 1000 * nats); }
 
 std::string edgeOf(const Balance& balance, const LiveCompression& live, double voxelSize) {
-  return mrpt::format("%.3g", live.tree().cube(balance.node).edge() * voxelSize) + " m";
+  return mrpt::format("%.3g", live.cube(balance.node).edge() * voxelSize) + " m";
 }
 
 std::string textOf(const Balance& balance, const LiveCompression& live) {
@@ -334,7 +334,7 @@ void WhyPanel::update() {
   std::vector<Balance> balances = live->balancesAround(m_cell->lowest);
   // What is below the cell would not say why it is as large as it is.
   const auto isBelow = [&](const Balance& b) {
-    return live->tree().cube(b.node).edge() < m_cell->edge();
+    return live->cube(b.node).edge() < m_cell->edge();
   };
   balances.erase(std::remove_if(balances.begin(), balances.end(), isBelow), balances.end());
   std::string told;

@@ -9,6 +9,7 @@
 #include <synthetic_world/Scene.h>
 #include <synthetic_world/Sensors.h>
 #include <synthetic_world/Solids.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <filesystem>
@@ -19,16 +20,129 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "Application.h"
-#include "Cli.h"
+#include "label_noise/LabelNoise.h"
 #include "synthetic_rawlog/Observations.h"
 
 namespace synth_rawlog {
 
+using strict_files::above;
+using strict_files::between;
+using strict_files::OptionList;
 using synthetic_world::ClassId;
 using namespace synthetic_rawlog;
 namespace {
+
+/** The command line. */
+struct Cli {
+  std::filesystem::path output;  // the rawlog; empty if only the truth or a picture is wanted
+  std::string scene = "village";
+  std::uint64_t seed = 1;
+  double hills = 1;  // factor
+
+  std::string sensor = "both";  // camera, lidar, both
+  int frames = 0;               // 0: one round
+  double rate = 2;              // frames a second
+  double speed = 2.5;           // m/s
+  double start = 0;             // m along the route
+  int people = 0;               // who walk to and fro across it
+  bool odometry = false;
+  double odometryNoise = 0.01;  // share of each movement
+
+  synthetic_world::CameraOptions camera;
+  double cameraPitch = 8;  // degrees down
+  synthetic_world::LidarOptions lidar;
+  double turnTime = 0;  // s that the LiDAR turns for a scan
+  synthetic_world::SensorNoise noise{0.01, 0, 0};
+  double labelNoise = 0;  // share of labels, of other kinds than points
+  label_noise::LabelNoise::Kind labelNoiseKind = label_noise::LabelNoise::Kind::Points;
+
+  std::filesystem::path classes;  // table whose raw ids are the world's classes; empty: the world's
+  std::filesystem::path truthQuery, picture;
+  double tolerance = 0.05;  // m
+
+  Outputs outputs;
+
+  explicit Cli(CLI::App& app);
+  /** Brings the parsed noise to the sensors. \throw CLI::RequiredError nothing is to be written. */
+  void complete();
+  bool wantsCamera() const { return sensor != "lidar"; }
+  bool wantsLidar() const { return sensor != "camera"; }
+};
+
+constexpr double kGreatestDepth = 65;  // m: depth images hold millimeters in 16 bits
+
+OptionList driveOptions(Cli& cli) {
+  OptionList list;
+  list.add("seed", cli.seed, "", "of the world and of all noise");
+  list.add("hills", cli.hills, "", between(0, 2), "factor of the ground's heights; 0 is flat");
+  list.add("rate", cli.rate, "", above(0), "frames a second");
+  list.add("speed", cli.speed, "m/s", above(0), "of the robot");
+  list.add("start", cli.start, "m", "where on the route to begin");
+  list.add("people", cli.people, "", between(0, 1000),
+           "people who walk to and fro across the route");
+  list.add("odometry", cli.odometry, "",
+           "write movements and sensory frames instead of observations with true poses");
+  list.add("odometry_noise", cli.odometryNoise, "", between(0, 1),
+           "of movements, standard deviation as a share of a movement");
+  return list;
+}
+
+OptionList sensorOptions(Cli& cli) {
+  OptionList list;
+  cli.camera.describe(list);
+  list.remove("max_range");
+  list.add("camera_pitch", cli.cameraPitch, "degrees", between(-80, 80), "down, of the camera");
+  list.add("camera_range", cli.camera.maxRange, "m",
+           above(synthetic_world::CameraOptions::kMinRange).upTo(kGreatestDepth),
+           "greatest depth of the camera");
+  cli.lidar.describe(list);
+  for (const char* option : {"lowest", "highest", "max_range"}) list.remove(option);
+  list.add("lidar_range", cli.lidar.maxRange, "m", above(synthetic_world::LidarOptions::kMinRange),
+           "range of the LiDAR");
+  list.add("turn_time", cli.turnTime, "s", between(0, 10),
+           "time of a turn of the LiDAR: each point has its own time, and is seen from where the "
+           "robot is then; 0: all at once");
+  list.add("ghosts", cli.lidar.ghosts, "", between(0, 1),
+           "share of the LiDAR's beams on windows, cars, water and signs that return by way of "
+           "what these mirror");
+  cli.noise.describe(list);
+  list.add("dropout", cli.noise.dropout, "", between(0, 1), "share of rays without a return");
+  return list;
+}
+
+Cli::Cli(CLI::App& app) : outputs(app) {
+  outputs.add(app, output, "FILE", "Rawlog to write");
+  outputs.addOther(
+      app.add_option("--picture", picture, "Write the world from above, colors and classes (PNG)"));
+  addWords(app.add_option("--scene", scene, "Which world"), synthetic_world::sceneNames())
+      ->capture_default_str();
+  app.add_option("--frames", frames, "Number of frames; by default one round of the route")
+      ->check(isNumber(between(1, 1000000)));
+  addWords(app.add_option("--sensor", sensor, "Sensors of the robot"), {"camera", "lidar", "both"})
+      ->capture_default_str();
+  label_noise::addLabelNoiseKind(app, labelNoiseKind);
+  app.add_option("--classes", classes,
+                 "Class table (YAML) for the labels, with the world's classes as raw ids. "
+                 "Without: the world's own table");
+  app.add_option("--truth-query", truthQuery,
+                 "Print what is at each point of this file (lines: x y z)")
+      ->check(CLI::ExistingFile);
+  addNumber(app, "--tolerance", tolerance, strict_files::atLeast(0),
+            "A point as near to a surface as this lies on it, m");
+  ::addOptions(app, driveOptions(*this), "World and drive");
+  ::addOptions(app, sensorOptions(*this), "Sensors");
+}
+
+void Cli::complete() {
+  if (output.empty() && truthQuery.empty() && picture.empty())
+    throw CLI::RequiredError("--output, --picture or --truth-query");
+  if (labelNoiseKind != label_noise::LabelNoise::Kind::Points)
+    labelNoise = std::exchange(noise.label, 0);
+  camera.noise = lidar.noise = noise;
+}
 
 /** The classes that things of the world have in the rawlog. */
 class WorldClasses {
@@ -111,17 +225,11 @@ void writeTruth(const Cli& cli, const WorldClasses& classes, int frames,
 constexpr double kStartTime = 1704067200;  // 2024-01-01, UTC
 
 Eigen::Isometry3d T_robot_camera(double pitchDegrees) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << 0.25, 0, 1.4;
-  T.rotate(Eigen::AngleAxisd(pitchDegrees * M_PI / 180, Eigen::Vector3d::UnitY()));
-  return T;
+  return Eigen::Translation3d(0.25, 0, 1.4) *
+         Eigen::AngleAxisd(pitchDegrees * M_PI / 180, Eigen::Vector3d::UnitY());
 }
 
-Eigen::Isometry3d T_robot_lidar() {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << 0, 0, 1.8;
-  return T;
-}
+Eigen::Isometry3d T_robot_lidar() { return Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.8)); }
 
 std::filesystem::path beside(std::filesystem::path rawlog, const char* extension) {
   return rawlog.replace_extension(extension);
@@ -268,14 +376,14 @@ int run(const Cli& cli) {
 }
 
 }  // namespace
+
 }  // namespace synth_rawlog
 
 int main(int argc, char** argv) {
   CLI::App app("A labeled camera and LiDAR in a synthetic world, written to a rawlog");
   synth_rawlog::Cli cli(app);
-  synth_rawlog::addOptions(app, cli);
   return runApplication(app, argc, argv, [&] {
-    synth_rawlog::complete(cli);
+    cli.complete();
     return synth_rawlog::run(cli);
   });
 }

@@ -23,7 +23,7 @@ ProgramRun dataset2rawlog(const std::string& arguments) {
 std::string failureOf(const std::string& arguments) {
   const ProgramRun result = dataset2rawlog(arguments);
   EXPECT_NE(result.status, 0) << result.output;
-  EXPECT_TRUE(contains(result.output, "dataset2rawlog: ")) << result.output;
+  EXPECT_TRUE(contains(result.output, "dataset2rawlog: "));
   return result.output;
 }
 

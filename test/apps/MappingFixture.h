@@ -50,7 +50,7 @@ class Rawlog2SemanticMap : public FolderTest {
       folder.write(std::string("out/") + name, "of before");
     const ProgramRun result = run(rawlog, more);
     EXPECT_EQ(result.status, 1) << result.errors;
-    EXPECT_TRUE(contains(result.errors, "rawlog2semantic-map: ")) << result.errors;
+    EXPECT_TRUE(contains(result.errors, "rawlog2semantic-map: "));
     EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
     for (const std::string& part : parts)
       EXPECT_TRUE(contains(result.errors, part)) << part << " is not in: " << result.errors;

@@ -37,8 +37,7 @@ inline SemanticOcTree smallMap() {
       for (float z = 0.3f; wall && z < 2; z += 0.2f) add(x, y, z, 3);
     }
   SemanticOcTree map(0.2, classes);
-  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-  T_map_sensor.translation().z() = 6;
+  Eigen::Isometry3d T_map_sensor(Eigen::Translation3d(0, 0, 6));
   for (int i = 0; i < 3; ++i) map.insert(cloud, T_map_sensor);
   return map;
 }
@@ -90,9 +89,9 @@ class SemanticMapView : public FolderTest {
     SemanticOcTree map = semantic_octree::loadTree(path("map.semantic"));
     semantic_octree::AbstractionOptions options;
     for (const int id : {1, 2, 3})
-      options.weights.terms.push_back(
-          tree_abstraction::relevant(map.classes().name(semantic_types::ClassId(id)), 1, {id}));
-    options.weights.alpha = alpha;
+      options.weights = {
+          {tree_abstraction::relevant(map.classes().name(semantic_types::ClassId(id)), 1, {id})},
+          alpha};
     setAbstraction(map, options);
     const semantic_octree::Abstraction abstraction(map);
     std::map<std::string, bool> expanded;

@@ -10,8 +10,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "ConvertedScans.h"
-#include "FolderTest.h"
 #include "SharedData.h"
+#include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
 using namespace semantic_types;

@@ -2,7 +2,6 @@
 #include <semantic_types/ClassTable.h>
 
 #include "ConvertedScans.h"
-#include "FolderTest.h"
 #include "RunProgram.h"
 #include "SharedData.h"
 #include "TemporaryFolder.h"
@@ -110,8 +109,8 @@ TEST_F(Pcd, onATerminalABarSaysHowFarTheConversionIs) {
   const std::string command =
       MSO_BIN_DIR "/dataset2rawlog pcd " + file.string() + " -f -o " + path("out.rawlog");
   const std::string shown = runCommand("script -qec '" + command + "' /dev/null").output;
-  EXPECT_TRUE(contains(shown, "Converting: [.....")) << shown;
-  EXPECT_TRUE(contains(shown, "\r\033[K" + path("out.rawlog") + ": 1 scans")) << shown;
+  EXPECT_TRUE(contains(shown, "Converting: [....."));
+  EXPECT_TRUE(contains(shown, "\r\033[K" + path("out.rawlog") + ": 1 scans"));
   EXPECT_FALSE(contains(runCommand(command).output, "Converting"));
 }
 

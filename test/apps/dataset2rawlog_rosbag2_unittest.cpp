@@ -6,7 +6,7 @@
 
 #include "BagWriter.h"
 #include "ConvertedScans.h"
-#include "FolderTest.h"
+#include "TemporaryFolder.h"
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -111,8 +111,8 @@ TEST_F(Rosbag2, scansThatNoTransformPlacesAreSkippedAndCounted) {
   const ProgramRun run = dataset2rawlog("rosbag2 --classes " + quoted(folder / "classes.yaml") +
                                         " " + quoted(folder.write("a.mcap", mcapOf(bag, ""))) +
                                         " -o " + quoted(folder / "out.rawlog"));
-  EXPECT_NE(run.output.find("4 scans"), std::string::npos) << run.output;
-  EXPECT_NE(run.output.find("2 frames skipped"), std::string::npos) << run.output;
+  EXPECT_TRUE(contains(run.output, "4 scans"));
+  EXPECT_TRUE(contains(run.output, "2 frames skipped"));
 }
 
 TEST_F(Rosbag2, timesOfPointsComeAlong) {
@@ -127,12 +127,10 @@ TEST_F(Rosbag2, topicsAreChosenWhereThereAreSeveral) {
   auto bag = drive();
   bag.push_back(cloudMessage("/other", 101, "base_link", {{1, 0, 0, 40}, {2, 0, 0, 40}}));
   const std::string file = quoted(folder.write("a.mcap", mcapOf(bag, "zstd")));
-  EXPECT_NE(messageOf("--no-labels " + file, folder)
-                .find("--topics has to choose the topics of points; there are: /other, /points"),
-            std::string::npos);
-  EXPECT_NE(
-      messageOf("--no-labels --topics /nowhere -- " + file, folder).find("no topic '/nowhere'"),
-      std::string::npos);
+  EXPECT_TRUE(contains(messageOf("--no-labels " + file, folder),
+                       "--topics has to choose the topics of points; there are: /other, /points"));
+  EXPECT_TRUE(contains(messageOf("--no-labels --topics /nowhere -- " + file, folder),
+                       "no topic '/nowhere'"));
   const auto other = scansOf("--topics /other -- " + file, folder);
   ASSERT_EQ(other.size(), 1u);
   EXPECT_EQ(other[0].scan.cloud.size(), 2u);
@@ -259,7 +257,7 @@ TEST_F(Rosbag2, whatIsWrongWithImagesIsNamed) {
                      folder);
   };
   const auto has = [](const std::string& message, const std::string& part) {
-    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_TRUE(contains(message, part));
   };
   auto tooShort = depthImage(101);
   tooShort.bytes.resize(tooShort.bytes.size() - 3);
@@ -297,8 +295,8 @@ TEST_F(Rosbag2, whatIsWrongIsNamed) {
   };
   const std::string labels = "--classes " + quoted(folder / "classes.yaml");
   const auto has = [](const std::string& message, const std::string& part) {
-    EXPECT_NE(message.find("a.mcap"), std::string::npos) << message;
-    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_TRUE(contains(message, "a.mcap"));
+    EXPECT_TRUE(contains(message, part));
   };
   const std::string good = mcapOf(drive(), "zstd");
   has(failureWith("no bag at all"), "is no MCAP file");
@@ -319,14 +317,13 @@ TEST_F(Rosbag2, whatIsWrongIsNamed) {
   bag[5] = cloudMessage("/points", 101, "lidar", {{1, 0, 0, 41}});
   has(failureWith(mcapOf(bag, ""), labels), "message 2 of /points: field 'label': raw class id 41");
   has(failureWith(good, labels + " --label-field class"), "no field 'class'");
-  EXPECT_NE(messageOf("--no-labels " + quoted(folder.write("a.bag", "x")), folder)
-                .find("expected a bag of ROS 2"),
-            std::string::npos);
-  EXPECT_NE(messageOf("--no-labels " + quoted(folder.write("a.db3", "no database")), folder)
-                .find("is no bag that can be read"),
-            std::string::npos);
-  EXPECT_NE(messageOf("--no-labels " + quoted(folder / "gone.mcap"), folder).find("no such bag"),
-            std::string::npos);
+  EXPECT_TRUE(contains(messageOf("--no-labels " + quoted(folder.write("a.bag", "x")), folder),
+                       "expected a bag of ROS 2"));
+  EXPECT_TRUE(
+      contains(messageOf("--no-labels " + quoted(folder.write("a.db3", "no database")), folder),
+               "is no bag that can be read"));
+  EXPECT_TRUE(
+      contains(messageOf("--no-labels " + quoted(folder / "gone.mcap"), folder), "no such bag"));
 }
 
 TEST_F(Rosbag2, aChunkThatAnnouncesMoreThanItHoldsTakesNoMemory) {
@@ -338,5 +335,5 @@ TEST_F(Rosbag2, aChunkThatAnnouncesMoreThanItHoldsTakesNoMemory) {
       runCommand("ulimit -v 600000; " MSO_BIN_DIR "/dataset2rawlog rosbag2 --no-labels " +
                  quoted(folder.write("a.mcap", bomb)) + " -o " + quoted(folder / "o.rawlog"))
           .output;
-  EXPECT_NE(message.find("not of the announced size"), std::string::npos) << message;
+  EXPECT_TRUE(contains(message, "not of the announced size"));
 }

@@ -53,7 +53,7 @@ TEST_P(Program, endsWith64AndItsNameAfterAWrongCommandLine) {
   EXPECT_EQ(wrong.status, 64) << wrong.output;
   EXPECT_EQ(wrong.output.rfind(GetParam() + ": unknown option '--no-such-option'", 0), 0u)
       << wrong.output;
-  EXPECT_TRUE(contains(wrong.output, GetParam() + " --help")) << wrong.output;
+  EXPECT_TRUE(contains(wrong.output, GetParam() + " --help"));
 }
 
 TEST_P(Program, endsWithAMessageUnderAnyLimitOfMemory) {
@@ -118,7 +118,7 @@ TEST(UsageErrors, nameTheOptionAndOfferWhatWasMeant) {
            {"semantic-map-edit a -o b --box 1,2,3", "--box needs 6 values"}}) {
     const ProgramRun run = runCommand(MSO_BIN_DIR "/" + command);
     EXPECT_EQ(run.status, 64) << run.output;
-    EXPECT_TRUE(contains(run.output, message)) << run.output;
+    EXPECT_TRUE(contains(run.output, message));
   }
 }
 
@@ -148,7 +148,7 @@ class UserData : public MapTool {
     const std::size_t entries = entriesOf(folder.path());
     const ProgramRun result = run(program, arguments);
     EXPECT_NE(result.status, 0) << program;
-    EXPECT_TRUE(contains(result.errors, said)) << result.errors;
+    EXPECT_TRUE(contains(result.errors, said));
     for (std::size_t i = 0; i < files.size(); ++i)
       EXPECT_EQ(folder.read(files[i]), before[i]) << files[i];
     EXPECT_EQ(entriesOf(folder.path()), entries) << program;

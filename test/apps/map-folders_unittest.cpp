@@ -170,8 +170,8 @@ TEST_F(MapFolders, takeAnotherDriveIn) {
   *std::find(arguments.begin(), arguments.end(), path("tiles")) = path("both");
   run("rawlog2semantic-map", arguments);
   const ProgramRun info = run("semantic-map-info", {path("both")});
-  EXPECT_TRUE(contains(info.output, "tiles of 12.8 m")) << info.output;
-  EXPECT_TRUE(contains(info.output, "saved 2 times")) << info.output;
+  EXPECT_TRUE(contains(info.output, "tiles of 12.8 m"));
+  EXPECT_TRUE(contains(info.output, "saved 2 times"));
   EXPECT_FALSE(loadMap(path("both")) == loadMap(path("tiles")));
 }
 
@@ -184,8 +184,8 @@ TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
   std::filesystem::resize_file(tile, std::filesystem::file_size(tile) / 2);
   const ProgramRun info = runProgram("semantic-map-info", {path("bad")});
   EXPECT_EQ(info.status, 1);
-  EXPECT_TRUE(contains(info.errors, tile.string())) << info.errors;
-  EXPECT_TRUE(contains(info.errors, "truncated")) << info.errors;
+  EXPECT_TRUE(contains(info.errors, tile.string()));
+  EXPECT_TRUE(contains(info.errors, "truncated"));
   const std::string elsewhere = "30,3,0.5", inIt = "-3,-3,0.5";
   EXPECT_EQ(run("semantic-map-info", {path("bad"), "--at", elsewhere}).output,
             run("semantic-map-info", {path("tiles"), "--at", elsewhere}).output);
@@ -196,7 +196,7 @@ TEST_F(MapFolders, haveNoSecondMapToCompareWith) {
   const ProgramRun run =
       runProgram("rawlog2semantic-map", joined(mapping("never", true), {"--compare-upkeep"}));
   EXPECT_EQ(run.status, 64);
-  EXPECT_TRUE(contains(run.errors, "--compare-upkeep")) << run.errors;
+  EXPECT_TRUE(contains(run.errors, "--compare-upkeep"));
   EXPECT_FALSE(std::filesystem::exists(path("never")));
 }
 
@@ -252,6 +252,6 @@ TEST_F(MapFolders, haveOneWriter) {
   const MapFolder writer(map, path("tiles"), MapFolder::Access::Write);
   const ProgramRun second = runProgram("rawlog2semantic-map", mapping("refused", true));
   EXPECT_EQ(second.status, 1);
-  EXPECT_TRUE(contains(second.errors, "another process writes into this folder")) << second.errors;
+  EXPECT_TRUE(contains(second.errors, "another process writes into this folder"));
   run("semantic-map-info", {path("tiles")});
 }

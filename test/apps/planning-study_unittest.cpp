@@ -52,7 +52,7 @@ class PlanningStudy : public FolderTest {
 
   void expectRefused(const ProgramRun& run, const std::string& part) const {
     EXPECT_NE(run.status, 0);
-    EXPECT_TRUE(contains(run.errors, part)) << run.errors;
+    EXPECT_TRUE(contains(run.errors, part));
     EXPECT_FALSE(std::filesystem::exists(folder / "study.csv"));
   }
 };

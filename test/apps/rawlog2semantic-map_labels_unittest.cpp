@@ -103,13 +103,12 @@ TEST_F(CameraMapping, withoutLabelsOrWithThemSkippedIsAnOption) {
 
 TEST_F(CameraMapping, tellsTheShareOfLabeledPointsAndWarnsBelowAHalf) {
   const ProgramRun labeled = run("camera.rawlog", labels());
-  EXPECT_TRUE(contains(labeled.output, "100 % of 2 points have a label")) << labeled.output;
+  EXPECT_TRUE(contains(labeled.output, "100 % of 2 points have a label"));
   EXPECT_FALSE(contains(labeled.output, "Warning")) << labeled.output;
   fs::rename(folder / "labels/10.01.png", folder / "labels/000000.png");  // read as 0 s
   const ProgramRun misnamed = succeeded(run("camera.rawlog", labels()));
-  EXPECT_TRUE(contains(misnamed.output, "0 % of 2 points have a label; 1 of 1 scans found none"))
-      << misnamed.output;
-  EXPECT_TRUE(contains(misnamed.output, "Warning: less than half")) << misnamed.output;
+  EXPECT_TRUE(contains(misnamed.output, "0 % of 2 points have a label; 1 of 1 scans found none"));
+  EXPECT_TRUE(contains(misnamed.output, "Warning: less than half"));
 }
 
 TEST_F(CameraMapping, labelImagesNeedAClassTable) {
@@ -117,7 +116,7 @@ TEST_F(CameraMapping, labelImagesNeedAClassTable) {
       "rawlog2semantic-map",
       {path("camera.rawlog"), "--labels", path("labels"), "--output", path("without-classes")});
   EXPECT_EQ(refused.status, 1);
-  EXPECT_TRUE(contains(refused.errors, "labels need a class table: --classes")) << refused.errors;
+  EXPECT_TRUE(contains(refused.errors, "labels need a class table: --classes"));
 }
 
 TEST_F(CameraMapping, theIniFileMayCalibrateTheCamera) {
@@ -369,7 +368,7 @@ TEST_F(Rawlog2SemanticMap, anOutputFolderThatCannotBeWrittenIsRefusedByName) {
         "rawlog2semantic-map",
         {"--config", path("small.ini"), "--output", output.string(), path("small.rawlog")});
     EXPECT_EQ(result.status, 1);
-    EXPECT_TRUE(contains(result.errors, output.string() + ": cannot write")) << result.errors;
+    EXPECT_TRUE(contains(result.errors, output.string() + ": cannot write"));
     EXPECT_EQ(folder.read("file"), "of before");
   }
 }

@@ -195,12 +195,11 @@ TEST(Rawlog2SemanticMapWithSlam, mapsIntoTilesWhatItMapsInMemoryAndFindsTheNextD
   };
   const ProgramRun far = street.map("far", with(intoTiles, moved(2000)));
   EXPECT_EQ(far.status, 1);
-  EXPECT_NE(far.errors.find("no scan was found in the map that is there"), std::string::npos)
-      << far.errors;
+  EXPECT_TRUE(contains(far.errors, "no scan was found in the map that is there"));
   EXPECT_EQ(semantic_octree::loadMap(tiles).getNumLeafNodes(), leaves);
 
   const ProgramRun second = succeeded(street.map("second", with(intoTiles, moved(0.7))));
-  EXPECT_NE(second.output.find("There is a map"), std::string::npos) << second.output;
+  EXPECT_TRUE(contains(second.output, "There is a map"));
   for (const auto& [time, T] : readPoses(street.folder.read("second/trajectory.tum")))
     EXPECT_LT(distance(T, std::prev(truth.upper_bound(time + 1e-4))->second), 0.15) << time;
   EXPECT_LT(double(semantic_octree::loadMap(tiles).getNumLeafNodes()), 1.2 * double(leaves));
@@ -241,8 +240,8 @@ TEST(Rawlog2SemanticMapWithSlam, saysWhyAReferenceCannotBeUsed) {
   const auto fails = [&](const std::string& reference, const std::string& why) {
     const ProgramRun run = street.map("out", {"--slam", "--reference", reference});
     EXPECT_EQ(run.status, 1) << run.errors;
-    EXPECT_NE(run.errors.find(reference), std::string::npos) << run.errors;
-    EXPECT_NE(run.errors.find(why), std::string::npos) << run.errors;
+    EXPECT_TRUE(contains(run.errors, reference));
+    EXPECT_TRUE(contains(run.errors, why));
     EXPECT_FALSE(fs::exists(street.folder / "out"));
   };
   fails((street.folder / "none.semantic").string(), "No such file");

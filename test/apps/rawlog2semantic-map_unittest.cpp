@@ -137,7 +137,7 @@ TEST_F(Rawlog2SemanticMap, whatLiesOutsideTheTrajectoryIsSkippedAndCounted) {
   const ProgramRun result = succeeded(run("late.rawlog"));
   EXPECT_EQ(summary()["observations"]["inserted"], 1);
   EXPECT_EQ(summary()["observations"]["skipped"]["outside the trajectory"], 1);
-  EXPECT_TRUE(contains(result.output, "1 outside the trajectory")) << result.output;
+  EXPECT_TRUE(contains(result.output, "1 outside the trajectory"));
 }
 
 TEST_F(Rawlog2SemanticMap, aTrajectoryFileGoesBeforeTheRawlogsPoses) {
@@ -190,8 +190,8 @@ TEST_F(Rawlog2SemanticMap, saysAsMuchAsIsWanted) {
   EXPECT_EQ(run("small.rawlog", {"-q"}).output, "");
   EXPECT_TRUE(contains(run().output, "1 scans inserted, 0 skipped"));
   const std::string text = run("small.rawlog", {"-v"}).output;
-  EXPECT_TRUE(contains(text, "CObservationRobotPose ''): a pose\n")) << text;
-  EXPECT_TRUE(contains(text, "CObservationLabeledCloud 'lidar'): inserted\n")) << text;
+  EXPECT_TRUE(contains(text, "CObservationRobotPose ''): a pose\n"));
+  EXPECT_TRUE(contains(text, "CObservationLabeledCloud 'lidar'): inserted\n"));
 }
 
 namespace {
@@ -275,14 +275,14 @@ TEST_F(LiveMapping, IsAnErrorWithoutADisplay) {
       joined({"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", kProgram, "--live"}, arguments("live")));
   EXPECT_EQ(run.status, 1);
   const char* const problem = hasWindows() ? "--live: there is no display" : "without windows";
-  EXPECT_TRUE(contains(run.errors, problem)) << run.errors;
+  EXPECT_TRUE(contains(run.errors, problem));
   EXPECT_FALSE(fs::exists(folder / "live"));
 }
 
 TEST_F(LiveMapping, IsNeededForAPause) {
   const ProgramRun run = runProgram("rawlog2semantic-map", joined(arguments("live"), {"--pause"}));
   EXPECT_EQ(run.status, 64);
-  EXPECT_TRUE(contains(run.errors, "--live")) << run.errors;
+  EXPECT_TRUE(contains(run.errors, "--live"));
 }
 
 namespace fs = std::filesystem;

@@ -75,8 +75,7 @@ TEST_F(SemanticMapDrive, WritesARawlogThatBecomesAMap) {
       runProgram("rawlog2semantic-map", {path("drive/drive.rawlog"), "--config",
                                          kConfig + "maps/synthetic.ini", "--output", path("map")}));
   // An image and a LiDAR scan each time.
-  EXPECT_NE(made.output.find(std::to_string(2 * cycles) + " scans inserted"), std::string::npos)
-      << made.output;
+  EXPECT_TRUE(contains(made.output, std::to_string(2 * cycles) + " scans inserted"));
   EXPECT_TRUE(has("map/map.semantic"));
 }
 
@@ -106,7 +105,7 @@ TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
       runProgram("semantic-map-drive", {"--order", kConfig + "orders/synthetic.yaml", "--config",
                                         kConfig + "drives/synthetic.ini", "--output", path("x")});
   EXPECT_EQ(run.status, 64);
-  EXPECT_NE(run.errors.find("--start is required"), std::string::npos) << run.errors;
+  EXPECT_TRUE(contains(run.errors, "--start is required"));
 }
 
 namespace {
@@ -242,6 +241,5 @@ TEST_F(DrivesInFolders, AreTheDrivesInTheMapInOnePieceToTheLastBit) {
 TEST_F(DrivesInFolders, HaveNoWindow) {
   const ProgramRun run = drive({"--map", of("tiles"), "--live"});
   EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.errors.find("--live: a map in a folder of tiles is not shown"), std::string::npos)
-      << run.errors;
+  EXPECT_TRUE(contains(run.errors, "--live: a map in a folder of tiles is not shown"));
 }

@@ -134,10 +134,9 @@ TEST(LabelCounts, statesTheMeanOfADirichletDistributionOfLabelsOrOfScans) {
 TEST_F(SemanticMapEvaluate, tellsInATableWhatMapsAndCountingKnow) {
   const ProgramRun run = succeeded(evaluate({file("map.semantic"), "--scans", file("scans.rawlog"),
                                              "--made-from", file("scans.rawlog")}));
-  EXPECT_TRUE(contains(run.output, "map: 100.0 % of 2 points lie in occupied voxels; 50.0 % of"))
-      << run.output;
+  EXPECT_TRUE(contains(run.output, "map: 100.0 % of 2 points lie in occupied voxels; 50.0 % of"));
   for (const char* line : {"\nmap ", "\nlabels counted ", "\nscans counted "})
-    EXPECT_TRUE(contains(run.output, line)) << run.output;
+    EXPECT_TRUE(contains(run.output, line));
   const json report = json::parse(folder.read("out/quality.json"));
   EXPECT_EQ(report["map"]["meanRecall"], 0.5);
   EXPECT_EQ(report["labels counted"]["accuracy"], 1);

@@ -158,7 +158,7 @@ TEST_F(SemanticMapExport, aFloorAtAWrongHeightIsNoticed) {
   const auto said = [this](const char* floor) {
     return exportTo({"grid.yaml"}, {"-f", "--floor", floor}).output;
   };
-  EXPECT_TRUE(contains(said("-1"), "% of the grid's known cells are obstacles")) << said("-1");
+  EXPECT_TRUE(contains(said("-1"), "% of the grid's known cells are obstacles"));
   EXPECT_FALSE(contains(said("0"), "Warning")) << said("0");
 }
 

@@ -52,9 +52,8 @@ TEST_F(SemanticMapInfo, saysTheClockAndTheHalfLives) {
   tree.age(0.25);
   saveTree(tree, map());
   const ProgramRun text = runProgram("semantic-map-info", {map()});
-  EXPECT_TRUE(contains(text.output, "  clock         0.25 s\n")) << text.output;
-  EXPECT_TRUE(contains(text.output, "  half-lives    tall grass 2.5 s, free space 3600.0 s\n"))
-      << text.output;
+  EXPECT_TRUE(contains(text.output, "  clock         0.25 s\n"));
+  EXPECT_TRUE(contains(text.output, "  half-lives    tall grass 2.5 s, free space 3600.0 s\n"));
   const auto json =
       nlohmann::json::parse(runProgram("semantic-map-info", {map(), "--json"}).output);
   EXPECT_EQ(json["clock"], 0.25);
@@ -164,7 +163,7 @@ TEST_F(SemanticMapInfo, namesDoNotReachATerminalAsTheyAre) {
   expectRefusal(missing, {"map\\x1b[2J\\x0a\\xc2\\x9b1m.semantic"});
   std::filesystem::rename(map(), folder / name);
   const ProgramRun run = succeeded(runProgram("semantic-map-info", {path(name)}));
-  EXPECT_TRUE(contains(run.output, "map\\x1b[2J")) << run.output;
+  EXPECT_TRUE(contains(run.output, "map\\x1b[2J"));
   EXPECT_FALSE(contains(run.output, "\x1b"));
   EXPECT_FALSE(contains(run.output, "\xC2\x9B"));
 }

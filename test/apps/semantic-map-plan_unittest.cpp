@@ -38,7 +38,7 @@ class SemanticMapPlan : public FolderTest {
   void expectError(const ProgramRun& result, const std::string& part) const {
     EXPECT_NE(result.status, 0);
     EXPECT_NE(result.status, 2);
-    EXPECT_TRUE(contains(result.errors, part)) << result.errors;
+    EXPECT_TRUE(contains(result.errors, part));
     EXPECT_FALSE(std::filesystem::exists(folder / "out/path.json"));
   }
 };
@@ -85,7 +85,7 @@ TEST_F(SemanticMapPlan, writesTheRoadmapForApplicationsOfMrpt) {
   const ProgramRun info =
       runCommand("/usr/bin/graph-slam --2d --info -i '" + path("out/roadmap.graph") + "'");
   EXPECT_EQ(info.status, 0) << info.output;
-  EXPECT_TRUE(contains(info.output, "202")) << info.output;
+  EXPECT_TRUE(contains(info.output, "202"));
 }
 
 TEST_F(SemanticMapPlan, everyKindOfGraphAndReadingIsKnown) {
@@ -108,7 +108,7 @@ TEST_F(SemanticMapPlan, withoutAPathItSaysWhyAndTheStatusIsTwo) {
   folder.write("out/path.csv", "of before");
   const ProgramRun result = run("0,4.2,0", "8,0,0");
   EXPECT_EQ(result.status, 2);
-  EXPECT_TRUE(contains(result.errors, "the start (0, 4.2) is blocked")) << result.errors;
+  EXPECT_TRUE(contains(result.errors, "the start (0, 4.2) is blocked"));
   EXPECT_EQ(report()["status"], "start blocked");
   EXPECT_FALSE(std::filesystem::exists(folder / "out/path.csv"));
   EXPECT_EQ(run("-8,0,0", "50,0,0").status, 2);

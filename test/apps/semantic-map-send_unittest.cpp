@@ -50,7 +50,7 @@ solutions:
                                commands + "\nstatus=$?\nwait $sender || status=\"sender $?\"\n" +
                                "cat log\necho status $status\n");
     const ProgramRun run = runCommand("sh '" + path("script") + "'");
-    EXPECT_TRUE(contains(run.output, "status 0\n")) << run.output;
+    EXPECT_TRUE(contains(run.output, "status 0\n"));
   }
   /** Runs the sender, and when it waits, an action that knows its port. \return how it ended */
   ProgramRun withSender(const std::string& arguments,
@@ -234,11 +234,11 @@ TEST_F(MapRadio, nobodyThereAndPortsInUseAreSaid) {
   const ProgramRun alone = runProgram(
       "semantic-map-receive", {"localhost:9", "--timeout", "0.3", "-o", path("r.semantic")});
   EXPECT_EQ(alone.status, 1);
-  EXPECT_TRUE(contains(alone.errors, "nobody answers at 127.0.0.1:9")) << alone.errors;
+  EXPECT_TRUE(contains(alone.errors, "nobody answers at 127.0.0.1:9"));
   const ProgramRun waiting =
       runProgram("semantic-map-send", {path("map.semantic"), "--port", "0", "--timeout", "0.3"});
   EXPECT_EQ(waiting.status, 1);
-  EXPECT_TRUE(contains(waiting.errors, "nobody asked for the map at port")) << waiting.errors;
+  EXPECT_TRUE(contains(waiting.errors, "nobody asked for the map at port"));
   EXPECT_TRUE(
       contains(runProgram("semantic-map-receive", {"localhost:x", "-o", path("r.semantic")}).errors,
                "expected HOST:PORT"));
@@ -280,7 +280,7 @@ TEST_F(MapRadio, whoFallsSilentIsForgottenAlone) {
     succeeded(receive(port));
   });
   EXPECT_EQ(run.status, 0) << run.output;
-  EXPECT_TRUE(contains(run.output, "fell silent")) << run.output;
+  EXPECT_TRUE(contains(run.output, "fell silent"));
 }
 
 TEST_F(MapRadio, aCookieIsOfOneStreamAndOneAddress) {
@@ -324,7 +324,7 @@ TEST_F(MapRadio, onlyWhoHasTheKeyIsHeard) {
       arguments.insert(arguments.end(), {"--timeout", "0.5"});
       const ProgramRun stranger = receive(port, arguments);
       EXPECT_EQ(stranger.status, 1);
-      EXPECT_TRUE(contains(stranger.errors, "nobody answers at")) << stranger.errors;
+      EXPECT_TRUE(contains(stranger.errors, "nobody answers at"));
     }
     succeeded(receive(port, {"--key", path("key")}));
   });

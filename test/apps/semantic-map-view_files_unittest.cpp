@@ -97,8 +97,7 @@ TEST_F(SemanticMapViewFiles, AreOpenedWhenTheyAreTyped) {
             type("grass.bt", "opened .*grass.bt: [0-9]* leaves"),
             type("path.csv", "opened .*path.csv: 17 m", kSecondMap),
             click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("screen.png")});
-  EXPECT_TRUE(contains(said, "semantic-map-view: cannot load map '" + path("bad.semantic")))
-      << said;
+  EXPECT_TRUE(contains(said, "semantic-map-view: cannot load map '" + path("bad.semantic")));
   const cv::Mat screen = cv::imread(path("screen.png"));
   ASSERT_FALSE(screen.empty());
   EXPECT_EQ(classAt(screen, pixelOf(-5, 2, 0.2)), 'r');

@@ -61,19 +61,19 @@ TEST_F(SemanticMapView, SaysWhatIsMissingInsteadOfFailing) {
   };
   const ProgramRun noDisplay = without({path("map.semantic")});
   EXPECT_EQ(noDisplay.status, 1);
-  EXPECT_TRUE(contains(noDisplay.errors, "there is no display")) << noDisplay.errors;
-  EXPECT_TRUE(contains(noDisplay.errors, "semantic-map-export")) << noDisplay.errors;
+  EXPECT_TRUE(contains(noDisplay.errors, "there is no display"));
+  EXPECT_TRUE(contains(noDisplay.errors, "semantic-map-export"));
   const ProgramRun otherDisplay =
       runProgram("/usr/bin/env", {"DISPLAY=:4711", kViewer, path("map.semantic")});
   EXPECT_EQ(otherDisplay.status, 1);
-  EXPECT_TRUE(contains(otherDisplay.errors, "':4711' cannot be opened")) << otherDisplay.errors;
+  EXPECT_TRUE(contains(otherDisplay.errors, "':4711' cannot be opened"));
   EXPECT_TRUE(contains(without({path("none.semantic")}).errors, "none.semantic"));
   folder.write("bad.semantic", "nothing of the kind");
   EXPECT_TRUE(contains(without({path("bad.semantic")}).errors, "bad.semantic"));
   for (const char* option : {"--weights", "--order"}) {
     const ProgramRun run = without({path("map.semantic"), option, path("none.yaml")});
     EXPECT_EQ(run.status, 1);
-    EXPECT_TRUE(contains(run.errors, "none.yaml")) << run.errors;
+    EXPECT_TRUE(contains(run.errors, "none.yaml"));
   }
   folder.write("bad.bt", "nothing of the kind");
   EXPECT_TRUE(contains(without({path("bad.bt")}).errors, "bad.bt"));
@@ -105,7 +105,7 @@ TEST_F(SemanticMapView, AnswersAClickOnACell) {
                     click(pixelOf(-1.1, -2.1, 0.2), "key 32762 32757 32768"),
                     click(pixelOf(5.1, 0.1, 2), "occupied, wall")}));
   const std::string said = folder.read("said.txt");
-  EXPECT_TRUE(contains(said, "occupied, road")) << said;
+  EXPECT_TRUE(contains(said, "occupied, road"));
 }
 
 TEST_F(SemanticMapView, SaysWhyACellIsExpandedOrNot) {

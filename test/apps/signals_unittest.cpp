@@ -51,8 +51,8 @@ class Interrupted : public FolderTest {
 
 TEST_F(Interrupted, onceItWritesWhatIsThereAndSaysSo) {
   EXPECT_EQ(runAnd("kill -INT $pid"), 130) << log();
-  EXPECT_TRUE(contains(log(), "will stop after this observation")) << log();
-  EXPECT_TRUE(contains(log(), "stopped early")) << log();
+  EXPECT_TRUE(contains(log(), "will stop after this observation"));
+  EXPECT_TRUE(contains(log(), "stopped early"));
   const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
   EXPECT_EQ(summary["stopped"], true);
   const int inserted = summary["observations"]["inserted"];
@@ -64,7 +64,7 @@ TEST_F(Interrupted, onceItWritesWhatIsThereAndSaysSo) {
 
 TEST_F(Interrupted, beforeTheFirstScanItSaysSoAndLeavesWhatWasThere) {
   EXPECT_EQ(runAnd("kill -INT $pid", "Reading the robot"), 130) << log();
-  EXPECT_TRUE(contains(log(), "stopped before the first scan")) << log();
+  EXPECT_TRUE(contains(log(), "stopped before the first scan"));
   EXPECT_EQ(folder.read("out/map.semantic"), "of before");
   EXPECT_FALSE(leftAnything());
 }
@@ -108,7 +108,7 @@ TEST(StoppedEarly, aSyntheticDriveIsAShorterOne) {
   const ProgramRun run =
       stopEarly(folder, "synth-rawlog -o a.rawlog --frames 1000000 --sensor lidar --columns 60");
   EXPECT_EQ(run.status, 130) << run.output;
-  EXPECT_TRUE(contains(run.output, "will stop after this frame")) << run.output;
+  EXPECT_TRUE(contains(run.output, "will stop after this frame"));
   labeled_cloud::RawlogReader reader(folder / "a.rawlog");
   int entries = 0;
   while (reader.next()) ++entries;
@@ -134,7 +134,7 @@ TEST(WrittenMeanwhile, byOthersStaysAndTheResultIsKeptBesideIt) {
       "synth-rawlog -o a.rawlog --frames 1000000 --sensor lidar --columns 60";
   const ProgramRun run = stopEarly(folder, command, "echo theirs >a.rawlog");
   EXPECT_EQ(run.status, 1) << run.output;
-  EXPECT_TRUE(contains(run.output, "somebody else has written it since")) << run.output;
+  EXPECT_TRUE(contains(run.output, "somebody else has written it since"));
   EXPECT_EQ(folder.read("a.rawlog"), "theirs\n");
   const std::size_t name = run.output.rfind("kept-");
   ASSERT_NE(name, std::string::npos) << run.output;

@@ -1,9 +1,13 @@
 #include <colored_graph/ColoredAStar.h>
 #include <gtest/gtest.h>
+#include <mrpt/graphs/CDirectedGraph.h>
+#include <mrpt/graphs/dijkstra.h>
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "Oracles.h"
 #include "PlaneGraph.h"
@@ -131,56 +135,6 @@ TEST(ColoredAStar, worksWithEveryNumberOfRanks) {
   }
 }
 
-TEST(ColoredAStar, edgeModelsSeeWhatTheyShould) {
-  ColoredGraph graph(4);
-  graph.addVertex(0);
-  graph.addVertex(1);
-  graph.addEdge(0, 1, {{0, 40}, {2, 10}, {1, 50}, {3, 0}});
-  const ClassOrder order(4, {{0}, {1}, {2}, {3}});
-  const auto cost = [&](EdgeModel edges, CostKind kind) {
-    return findColoredPath(graph, 0, 1, {order, edges, kind}).cost;
-  };
-  EXPECT_EQ(cost(EdgeModel::Endpoint, CostKind::Count), (Tuple{0, 0, 1, 100}));
-  EXPECT_EQ(cost(EdgeModel::Endpoint, CostKind::ArcLength), (Tuple{0, 0, 100, 100}));
-  EXPECT_EQ(cost(EdgeModel::Sweep, CostKind::Count), (Tuple{1, 0, 0, 100}));
-  EXPECT_EQ(cost(EdgeModel::Sweep, CostKind::ArcLength), (Tuple{100, 0, 0, 100}));
-  EXPECT_EQ(cost(EdgeModel::Profile, CostKind::Count), (Tuple{1, 1, 1, 100}));
-  EXPECT_EQ(cost(EdgeModel::Profile, CostKind::ArcLength), (Tuple{0, 10, 50, 100}));
-}
-
-TEST(ColoredAStar, endPointsHideAForbiddenClassThatTheOthersSee) {
-  ColoredGraph graph(2);
-  graph.addVertex(0);
-  graph.addVertex(0);
-  graph.addEdge(0, 1, {{0, 5}, {1, 1}});
-  const ClassOrder onlyFirst(2, {{0}});
-  EXPECT_TRUE(findColoredPath(graph, 0, 1, {onlyFirst, EdgeModel::Endpoint}).found());
-  EXPECT_FALSE(findColoredPath(graph, 0, 1, {onlyFirst, EdgeModel::Sweep}).found());
-  EXPECT_FALSE(findColoredPath(graph, 0, 1, {onlyFirst, EdgeModel::Profile}).found());
-}
-
-TEST(ColoredAStar, lowerClassesDecideWhenBadLengthsAreEqual) {
-  // With floating-point sums, 0.1 + 0.2 > 0.3 would choose the upper way, long in class 1.
-  ColoredGraph graph(3);
-  for (int v = 0; v < 3; ++v) graph.addVertex(0);
-  graph.addEdge(0, 1, {{2, lengthUp(0.1)}});
-  graph.addEdge(1, 2, {{2, lengthUp(0.2)}});
-  graph.addEdge(0, 2, {{2, lengthUp(0.3)}, {1, lengthUp(7)}});
-  const CostModel model{ClassOrder(3, {{0}, {1}, {2}}), EdgeModel::Profile, CostKind::ArcLength};
-  EXPECT_EQ(findColoredPath(graph, 0, 2, model).vertices, (std::vector<VertexId>{0, 1, 2}));
-}
-
-TEST(ColoredAStar, keepsVerticesOfEqualKeys) {
-  // A queue that takes equal keys for the same entry loses one of the two ways.
-  ColoredGraph graph(1);
-  for (int v = 0; v < 6; ++v) graph.addVertex(0);
-  for (VertexId v = 1; v <= 4; ++v) graph.addEdge(5, v, {{0, 10}});
-  graph.addEdge(4, 0, {{0, 10}});
-  const CostModel model{ClassOrder(1, {{0}})};
-  EXPECT_EQ(findColoredPath(graph, 0, 5, model).cost, Tuple{20});
-  EXPECT_EQ(findColoredPath(graph, 3, 5, model).cost, Tuple{10});
-}
-
 TEST(ColoredAStar, tiesGoToFewerEdgesThenToSmallerIds) {
   ColoredGraph graph(1);
   for (int v = 0; v < 7; ++v) graph.addVertex(0);
@@ -262,4 +216,74 @@ TEST(ColoredAStar, reachesAllNeighborsOfAVertexWithVeryManyEdges) {
   const CostModel model{ClassOrder(1, {{0}})};
   for (const VertexId v : {1u, 4095u, 4096u, 4097u, 19999u, 20000u})
     EXPECT_EQ(findColoredPath(graph, v, 2, model).cost, Tuple{v + 2});
+}
+
+namespace {
+
+struct LengthEdge {
+  double length = 0;
+};
+using MrptGraph = mrpt::graphs::CDirectedGraph<LengthEdge>;
+
+/** Of parallel edges the shortest: CDijkstra looks at one only. */
+MrptGraph shortestEdges(const ColoredGraph& graph) {
+  std::map<std::pair<VertexId, VertexId>, double> lengths;
+  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
+    const Edge& edge = graph.edge(e);
+    if (edge.state != EdgeState::Usable) continue;
+    const double length = static_cast<double>(edge.length);
+    const auto known = lengths.emplace(std::minmax(edge.a, edge.b), length).first;
+    known->second = std::min(known->second, length);
+  }
+  MrptGraph mrptGraph;
+  for (const auto& [ends, length] : lengths)
+    mrptGraph.insertEdge(ends.first, ends.second, LengthEdge{length});
+  return mrptGraph;
+}
+
+}  // namespace
+
+TEST(MrptDijkstra, agreesOnLengthsWhereThereIsOneRank) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 12, 90, 6);
+    const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1, 2, 3, 4}})};
+    const MrptGraph mrptGraph = shortestEdges(plane.graph);
+    const auto length = [](const MrptGraph&, mrpt::graphs::TNodeID, mrpt::graphs::TNodeID,
+                           const MrptGraph::edge_t& edge) { return edge.length; };
+    const mrpt::graphs::CDijkstra<MrptGraph> tree(mrptGraph, 0, length);
+    for (VertexId goal = 1; goal < 12; ++goal) {
+      const PathResult result = findColoredPath(plane.graph, 0, goal, model);
+      ASSERT_TRUE(result.found()) << "seed " << seed;
+      EXPECT_EQ(result.cost.back(), tree.getNodeDistanceToRoot(goal)) << "seed " << seed;
+    }
+  }
+}
+
+TEST(ColoredAStar, boundsSaveExpansions) {
+  std::size_t none = 0, length = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 400, 20000, 40, 5);
+    const CostModel model{ClassOrder(5, {{0, 1, 2, 3, 4}})};
+    none += findColoredPath(plane.graph, 0, 1, model).statistics.expansions;
+    length += findColoredPath(plane.graph, 0, 1, model, boundedBy(plane)).statistics.expansions;
+  }
+  EXPECT_LT(length, none / 2);
+}
+
+TEST(ColoredAStar, whereThereIsNoPathNothingIsExpandedTwice) {
+  // A square of 96 x 96 and, apart from it, the start: every lower bound is infinite.
+  ColoredGraph graph(2);
+  const VertexId width = 96, start = width * width;
+  for (VertexId v = 0; v <= start; ++v) graph.addVertex(0);
+  for (VertexId v = 0; v < start; ++v) {
+    if ((v + 1) % width) graph.addEdge(v, v + 1, {{v % 7 == 0, 10}});
+    if (v + width < start) graph.addEdge(v, v + width, {{v % 5 == 0, 10}});
+  }
+  const CostModel model{ClassOrder(2, {{0}, {1}})};
+  for (const bool oneWay : {false, true}) {
+    if (oneWay) graph.addEdge(0, start, {{0, 10}}, {0, kClosed});  // leads to the start only
+    const PathResult result = findColoredPath(graph, start, 0, model);
+    EXPECT_EQ(result.status, SearchStatus::NotConnected);
+    EXPECT_LE(result.statistics.expansions, graph.vertexCount());
+  }
 }

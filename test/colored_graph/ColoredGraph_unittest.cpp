@@ -1,7 +1,10 @@
+#include <colored_graph/ClassOrder.h>
 #include <colored_graph/ColoredGraph.h>
+#include <colored_graph/Edge.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -276,4 +279,83 @@ TEST(ColoredGraph, namesTheEdgeThatIsShorterThanItsBound) {
   graph.setProfile(2, {{0, 30}});
   graph.setProfile(2, {{0, 29}});  // evaluated edges may change in any way
   EXPECT_EQ(graph.edge(2).length, 29);
+}
+
+TEST(Length, roundsEdgesUpAndBoundsDown) {
+  EXPECT_EQ(lengthUp(0.00011), 2);
+  EXPECT_EQ(lengthDown(0.00019), 1);
+  EXPECT_EQ(lengthUp(0), 0);
+  EXPECT_EQ(lengthDown(0), 0);
+  EXPECT_DOUBLE_EQ(toMeters(12345), 1.2345);
+}
+
+TEST(Length, roundingNoiseAtAWholeUnitDoesNotCount) {
+  EXPECT_EQ(lengthUp(0.1 + 0.2), 3000);    // 0.30000000000000004
+  EXPECT_EQ(lengthDown(0.8 - 0.5), 3000);  // 0.30000000000000004
+  EXPECT_EQ(lengthDown(0.9 - 0.6), 3000);  // 0.30000000000000004 or 0.29999999999999998
+  EXPECT_EQ(lengthDown(0.4 - 0.1), 3000);
+  EXPECT_EQ(lengthDown(1.1 - 0.8), 3000);
+}
+
+TEST(Length, roundedLinesKeepTheTriangleInequality) {
+  EXPECT_TRUE(rc::check([] {
+    const auto coordinate = [] { return *rc::gen::inRange(-3000, 3000) * 0.1; };
+    const double ax = coordinate(), ay = coordinate(), bx = coordinate(), by = coordinate();
+    const double t = *rc::gen::inRange(-10, 20) * 0.1;  // c on the line through a and b
+    const double cx = ax + t * (bx - ax), cy = ay + t * (by - ay);
+    const double ab = std::hypot(ax - bx, ay - by), bc = std::hypot(bx - cx, by - cy),
+                 ac = std::hypot(ax - cx, ay - cy);
+    RC_ASSERT(lengthDown(ac) <= lengthUp(ab) + lengthDown(bc));
+    RC_ASSERT(lengthDown(bc) <= lengthUp(ab) + lengthDown(ac));
+  }));
+}
+
+TEST(Length, refusesWhatIsNoLength) {
+  for (const double meters :
+       {-1e-9, -1.0, std::nan(""), 1e15, std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(lengthUp(meters), std::invalid_argument) << meters;
+    EXPECT_THROW(lengthDown(meters), std::invalid_argument) << meters;
+  }
+}
+
+namespace {
+
+/** The message of the exception that making this order throws. */
+std::string refusal(int classes, const std::vector<std::vector<GraphClass>>& bestToWorst) {
+  try {
+    ClassOrder(classes, bestToWorst);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST(ClassOrder, ranksClassesAndForbidsTheRest) {
+  const ClassOrder order(5, {{3}, {0, 4}, {1}});
+  EXPECT_EQ(order.classes(), 5);
+  EXPECT_EQ(order.ranks(), 3);
+  EXPECT_EQ(order.rank(3), 0);
+  EXPECT_EQ(order.rank(0), 1);
+  EXPECT_EQ(order.rank(4), 1);
+  EXPECT_EQ(order.rank(1), 2);
+  EXPECT_EQ(order.rank(2), kForbidden);
+}
+
+TEST(ClassOrder, saysWhatIsWrongWithAnOrder) {
+  EXPECT_EQ(refusal(0, {{0}}), "ClassOrder: a graph has at least one class, not 0");
+  EXPECT_EQ(refusal(3, {}), "ClassOrder: the order is empty: every edge would be forbidden");
+  EXPECT_EQ(refusal(3, {{0}, {}}), "ClassOrder: rank 1 has no class");
+  EXPECT_EQ(refusal(3, {{0}, {3}}), "ClassOrder: class 3 is not one of the 3 classes");
+  EXPECT_EQ(refusal(3, {{0}, {1}, {0}}), "ClassOrder: class 0 is named twice");
+  EXPECT_EQ(refusal(3, {{1, 1}}), "ClassOrder: class 1 is named twice");
+}
+
+TEST(ClassOrder, hasSixteenRanksAtMost) {
+  std::vector<std::vector<GraphClass>> ranks;
+  for (GraphClass id = 0; id < 16; ++id) ranks.push_back({id});
+  EXPECT_EQ(refusal(17, ranks), "accepted");
+  ranks.push_back({16});
+  EXPECT_EQ(refusal(17, ranks), "ClassOrder: 17 ranks, at most 16");
 }

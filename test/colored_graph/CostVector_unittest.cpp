@@ -34,14 +34,6 @@ std::vector<std::int64_t> parts() {
 
 }  // namespace
 
-TEST(CostVector, worstClassDecidesFirst) {
-  EXPECT_LT(make({0, 9, 9, 9}), make({1, 0, 0, 0}));
-  EXPECT_LT(make({1, 0, 9, 9}), make({1, 1, 0, 0}));
-  EXPECT_GT(make({1, 0, 0, 0}), make({0, 9, 9, 9}));
-  EXPECT_GE(make({1, 0, 0, 0}), make({0, 9, 9, 9}));
-  EXPECT_LE(make({0, 9, 9, 9}), make({1, 0, 0, 0}));
-}
-
 TEST(CostVector, isStrictlyAndTotallyOrderedLikeASequence) {
   EXPECT_TRUE(rc::check([] {
     const auto l = parts(), r = parts();

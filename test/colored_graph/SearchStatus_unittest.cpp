@@ -213,3 +213,47 @@ TEST(SearchStatus, everyStatusHasItsOwnWords) {
   EXPECT_EQ(words.size(), 7u);
   EXPECT_EQ(words.count("unknown status"), 0u);
 }
+
+using namespace colored_graph;
+using oracles::Tuple;
+
+namespace {
+
+class TollsIn : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (int v = 0; v < 4; ++v) graph.addVertex(0);
+  }
+  PathResult solve(VertexId start, VertexId goal) {
+    return findColoredPath(graph, start, goal, model, options);
+  }
+
+  ColoredGraph graph{2};
+  CostModel model{ClassOrder(2, {{0}, {1}}), EdgeModel::Profile, CostKind::ArcLength, true};
+  SearchOptions options;
+};
+
+}  // namespace
+
+TEST_F(TollsIn, evaluationLeavesThemAsTheyAre) {
+  const EdgeId e = graph.addUnevaluatedEdge(0, 1, 5, {7, kClosed});
+  options.evaluate = [](EdgeId) { return EdgeProfile{{0, 6}, {1, 2}}; };
+  EXPECT_EQ(solve(0, 1).cost, (Tuple{2, 15, 8}));
+  EXPECT_EQ(graph.edge(e).tolls.toB, 7);
+  EXPECT_EQ(solve(1, 0).status, SearchStatus::NotConnected);
+}
+
+TEST_F(TollsIn, theLargestAreNoOverflow) {
+  const Length large = (Length{1} << 62) - 1;
+  graph.addEdge(0, 1, {{0, large + 1}}, {large, large});
+  graph.addEdge(1, 2, {{0, 1}});
+  EXPECT_EQ(solve(0, 1).cost, (Tuple{0, large + large + 1, large + 1}));
+  EXPECT_EQ(solve(0, 2).status, SearchStatus::CostOverflow);
+}
+
+TEST_F(TollsIn, aForbiddenClassBehindAClosedWayIsNotNamed) {
+  model.order = ClassOrder(2, {{0}});
+  graph.addEdge(0, 1, {{1, 10}}, {0, kClosed});
+  EXPECT_EQ(solve(0, 1).status, SearchStatus::OnlyForbidden);
+  EXPECT_EQ(solve(1, 0).status, SearchStatus::NotConnected);
+}

@@ -159,8 +159,8 @@ TEST_F(CloudLabelers, nameAPictureThatCannotBeUsedOrLeaveItOutAndReportIt) {
     auto strict = make({{"front", 2}}, {}, wrongSize ? 50 : 100);
     strict.addPicture(wrongSize ? picture("front", 10) : uncalibrated);
     const std::string error = errorOf([&] { labeled(strict, {{5, 0, 0}}, 10); });
-    EXPECT_TRUE(contains(error, "CObservationImage 'front' at 10")) << error;
-    EXPECT_TRUE(contains(error, expected)) << error;
+    EXPECT_TRUE(contains(error, "CObservationImage 'front' at 10"));
+    EXPECT_TRUE(contains(error, expected));
     auto lenient = make({{"front", 2}}, skip, wrongSize ? 50 : 100);
     lenient.addPicture(wrongSize ? picture("front", 10) : uncalibrated);
     EXPECT_TRUE(labeled(lenient, {{5, 0, 0}}, 10).labelsMissing);

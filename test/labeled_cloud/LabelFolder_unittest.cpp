@@ -259,8 +259,7 @@ TEST(LabelFolder, aLabelImageOfAnotherSizeIsNamed) {
                           std::make_shared<LabelFolder>(folder.path(), roadGrassSky()));
   const std::string error = errorOf([&] { converter.convert(*scanAt(10)); });
   EXPECT_TRUE(
-      contains(error, "10.png: the label image has 60 x 20 pixels, the depth image 60 x 40"))
-      << error;
+      contains(error, "10.png: the label image has 60 x 20 pixels, the depth image 60 x 40"));
 }
 
 TEST(LabelFolder, badFoldersAndNamesAreNamed) {

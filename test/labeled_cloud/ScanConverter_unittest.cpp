@@ -162,8 +162,7 @@ TEST(UnlabeledClouds, withoutAllTheirCoordinatesAreRefused) {
   scan.sensorLabel = "velo";
   scan.point_cloud.x = {1, 2, 3, 4};
   scan.point_cloud.y = scan.point_cloud.z = {1, 2};
-  EXPECT_TRUE(contains(errorConverting(scan), "its points have 4 x, 2 y and 2 z"))
-      << errorConverting(scan);
+  EXPECT_TRUE(contains(errorConverting(scan), "its points have 4 x, 2 y and 2 z"));
 }
 
 TEST(UnlabeledClouds, rawVelodynePacketsAreUnpacked) {

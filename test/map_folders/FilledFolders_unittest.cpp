@@ -131,8 +131,8 @@ TEST_F(FilledFolders, thatDoNotFitIntoMemorySayHowMuchTheyNeed) {
   const SemanticOcTree whole = loadMap(folder / "map");
   StoredMap stored(folder / "map", 0);
   const std::string message = errorOf([&] { stored.folder()->bringAll(whole.memoryUsage() / 4); });
-  EXPECT_TRUE(contains(message, path("map"))) << message;
-  EXPECT_TRUE(contains(message, "needs about ")) << message;
+  EXPECT_TRUE(contains(message, path("map")));
+  EXPECT_TRUE(contains(message, "needs about "));
   EXPECT_TRUE(contains(message, strict_files::sizeText(whole.memoryUsage() / 4) + " are left"));
   EXPECT_LE(stored.folder()->contents().tilesInMemory, 1u);
   stored.folder()->bringAll(4 * whole.memoryUsage());

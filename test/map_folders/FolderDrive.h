@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "FolderTest.h"
 #include "RandomScans.h"
+#include "TemporaryFolder.h"
 
 namespace folder_drive {
 

@@ -53,8 +53,8 @@ TEST_F(MapFolderFaults, aBadTileIsNamedAndTheRestIsUsable) {
     write(files[3], content);
     const auto problems = problemsOf(folder / "map");
     ASSERT_EQ(problems.size(), 1u) << message;
-    EXPECT_TRUE(contains(problems[0], files[3])) << problems[0];
-    EXPECT_TRUE(contains(problems[0], message)) << problems[0];
+    EXPECT_TRUE(contains(problems[0], files[3]));
+    EXPECT_TRUE(contains(problems[0], message));
     EXPECT_TRUE(contains(errorOf([&] { loadMap(folder / "map"); }), files[3]));
   }
   fs::remove(files[3]);
@@ -90,7 +90,7 @@ TEST_F(MapFolderFaults, ofAnotherKindOfMapIsRefused) {
   SemanticOcTree coarse(0.8, numberedClasses(5)), others(0.4, numberedClasses(4));
   for (SemanticOcTree* map : {&coarse, &others}) {
     const std::string error = errorOf([&] { MapFolder(*map, folder / "map", kWrite); });
-    EXPECT_TRUE(contains(error, "another resolution, other classes or parameters")) << error;
+    EXPECT_TRUE(contains(error, "another resolution, other classes or parameters"));
     EXPECT_TRUE(map->empty());
   }
   EXPECT_TRUE(contains(errorOf([&] {
@@ -293,8 +293,8 @@ TEST_F(FolderIndex, namesTilesThatNoOlderOnesAndNoOthersCanReplace) {
       if (other.empty() || other == own) continue;
       write(file, other);
       const std::string error = errorOf([&] { loadMap(map.string()); });
-      EXPECT_TRUE(contains(error, file.string())) << error;
-      EXPECT_TRUE(contains(error, "it is no")) << error;
+      EXPECT_TRUE(contains(error, file.string()));
+      EXPECT_TRUE(contains(error, "it is no"));
       older += contains(error, "index.yaml names: checksum ");
     }
     write(file, own);

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "FolderTest.h"
 #include "FullDisk.h"
+#include "TemporaryFolder.h"
 
 using map_pictures::GifFile;
 
@@ -125,7 +125,7 @@ TEST_F(GifFiles, whatCannotBeWrittenIsAnErrorThatNamesTheFile) {
     gif.add(fields());
     gif.close();
   });
-  EXPECT_TRUE(contains(full, "full.gif")) << full;
+  EXPECT_TRUE(contains(full, "full.gif"));
   EXPECT_FALSE(std::filesystem::exists(folder / "full.gif"));
 }
 

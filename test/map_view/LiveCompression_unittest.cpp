@@ -62,10 +62,10 @@ bool isIn(const CubeId& cube, const std::vector<KeyBox>& boxes) {
 }
 
 /** The trees of all alphas; there are nodes above the blocks, which all of them expand. */
-tree_abstraction::AlphaPath pathOf(const map_view::InformationTree& tree) {
+tree_abstraction::AlphaPath pathOf(const LiveCompression& live) {
   std::vector<double> taus;
-  for (map_view::InformationTree::Index node = 0; node < tree.size(); ++node)
-    if (std::isfinite(tree.alpha(node))) taus.push_back(tree.alpha(node));
+  for (LiveCompression::Index node = 0; node < live.size(); ++node)
+    if (std::isfinite(live.alphaOf(node))) taus.push_back(live.alphaOf(node));
   return tree_abstraction::AlphaPath(std::move(taus));
 }
 
@@ -131,7 +131,7 @@ TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfBytes) {
     EXPECT_LE(bytes(), wanted);
     const std::size_t leaves = live.numLeaves();
     // The next larger tree takes more.
-    const auto path = pathOf(live.tree());
+    const auto path = pathOf(live);
     std::size_t k = 0;
     while (path.alpha(k) > live.alpha()) ++k;
     live.setAlpha(path.alpha(k + 1));
@@ -139,7 +139,7 @@ TEST(LiveCompression, FindsTheTreeOfAWantedNumberOfBytes) {
     EXPECT_GT(bytes(), wanted);
   }
   live.setBytes(map, 1);
-  EXPECT_EQ(live.alpha(), pathOf(live.tree()).alpha(0)) << "the smallest one";
+  EXPECT_EQ(live.alpha(), pathOf(live).alpha(0)) << "the smallest one";
 }
 
 TEST(LiveCompression, HasTheLeavesOfItsSolutionAlone) {

@@ -208,7 +208,7 @@ TEST_F(Repository, eachLibraryIsDescribedInOneSentenceAndDocumented) {
         << library.path() << ": " << sentence;
     if (!fs::exists(library.path() / "include")) continue;
     const std::string includes = "libs/" + library.path().filename().string() + "/include";
-    EXPECT_NE(textOf(root / "Doxyfile").find(includes), std::string::npos) << includes;
+    EXPECT_TRUE(contains(textOf(root / "Doxyfile"), includes)) << includes;
   }
 }
 
@@ -231,9 +231,8 @@ TEST_F(Repository, filesThatRepeatTheVersionHaveThatOfTheProject) {
   std::ifstream file(root / "VERSION");
   std::string version;
   std::getline(file, version);
-  EXPECT_NE(textOf(root / "package.xml").find("<version>" + version + "</version>\n"),
-            std::string::npos);
-  EXPECT_NE(textOf(root / "CITATION.cff").find("\nversion: " + version + "\n"), std::string::npos);
+  EXPECT_TRUE(contains(textOf(root / "package.xml"), "<version>" + version + "</version>\n"));
+  EXPECT_TRUE(contains(textOf(root / "CITATION.cff"), "\nversion: " + version + "\n"));
 }
 
 TEST_F(Repository, everyPackageIsListedOnce) {

@@ -158,7 +158,7 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
     O options = someOptions(0.01);
     change(options);
     const std::string error = errorOf([&] { setAbstraction(map, options); });
-    EXPECT_TRUE(contains(error, word)) << error;
+    EXPECT_TRUE(contains(error, word));
   }
   EXPECT_FALSE(hasAbstraction(map));
 }

@@ -142,13 +142,13 @@ TEST(DriveOptions, WhatTheVehicleAndTheMapSayTheyFollow) {
 }
 
 TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {
-  EXPECT_NE(faultOf("max_sped = 1\n").find("did you mean 'max_speed'"), std::string::npos);
-  EXPECT_NE(faultOf("max_speed = 0\n").find("[drive] max_speed is 0"), std::string::npos);
-  EXPECT_NE(faultOf("[guid]\nperiod = 3\n").find("did you mean 'guide'"), std::string::npos);
-  EXPECT_NE(faultOf("[guide]\nat_goal = 0\n").find("at_goal is 0"), std::string::npos);
-  EXPECT_NE(faultOf("[movers]\nclasses = ghost\n").find("ini: MoverOptions: 'ghost' is no class"),
-            std::string::npos);
-  EXPECT_NE(faultOf("[sensors]\ncamera = no\nlidar = no\n").find("both off"), std::string::npos);
+  EXPECT_TRUE(contains(faultOf("max_sped = 1\n"), "did you mean 'max_speed'"));
+  EXPECT_TRUE(contains(faultOf("max_speed = 0\n"), "[drive] max_speed is 0"));
+  EXPECT_TRUE(contains(faultOf("[guid]\nperiod = 3\n"), "did you mean 'guide'"));
+  EXPECT_TRUE(contains(faultOf("[guide]\nat_goal = 0\n"), "at_goal is 0"));
+  EXPECT_TRUE(
+      contains(faultOf("[movers]\nclasses = ghost\n"), "ini: MoverOptions: 'ghost' is no class"));
+  EXPECT_TRUE(contains(faultOf("[sensors]\ncamera = no\nlidar = no\n"), "both off"));
 }
 
 namespace {

@@ -102,5 +102,5 @@ TEST(DriveStudy, DrivesATaskAndCountsIt) {
   const auto table = csvTable(toCsv({trial}));
   ASSERT_EQ(table.size(), 2u);
   EXPECT_EQ(table[0].size(), table[1].size());
-  EXPECT_NE(toCsv({trial}).find("\nyard,0,yes,arrived,"), std::string::npos);
+  EXPECT_TRUE(contains(toCsv({trial}), "\nyard,0,yes,arrived,"));
 }

@@ -34,7 +34,7 @@ class ObstacleSensing : public testing::Test {
   colored_graph::ClassOrder order{5, {{1}, {2}, {0}}};
 };
 
-bool contains(const ObstaclePoints& points, double x, double y) {
+bool hasPoint(const ObstaclePoints& points, double x, double y) {
   return std::any_of(points.begin(), points.end(), [&](const Eigen::Vector2d& p) {
     return (p - Eigen::Vector2d(x, y)).norm() < 1e-3;
   });
@@ -46,20 +46,20 @@ TEST_F(ObstacleSensing, FindsWallsPostsAndForbiddenGround) {
   SemanticPlanner planner = this->planner();
   planner.plan({0, 0, 0}, {0, -3, 0});
   const ObstaclePoints points = senseObstacles(planner, {0, 0, 0}, 0);
-  EXPECT_TRUE(contains(points, 3.1, 0.1));
-  EXPECT_TRUE(contains(points, -2.9, 1.1));
-  EXPECT_TRUE(contains(points, 3.1, -3.1));
-  EXPECT_FALSE(contains(points, 1.1, 0.1));
+  EXPECT_TRUE(hasPoint(points, 3.1, 0.1));
+  EXPECT_TRUE(hasPoint(points, -2.9, 1.1));
+  EXPECT_TRUE(hasPoint(points, 3.1, -3.1));
+  EXPECT_FALSE(hasPoint(points, 1.1, 0.1));
   ObstacleOptions free;
   free.forbiddenGround = false;
-  EXPECT_FALSE(contains(senseObstacles(planner, {0, 0, 0}, 0, free), 3.1, -3.1));
+  EXPECT_FALSE(hasPoint(senseObstacles(planner, {0, 0, 0}, 0, free), 3.1, -3.1));
 }
 
 TEST_F(ObstacleSensing, IsInTheVehiclesFrame) {
   SemanticPlanner planner = this->planner();
   planner.plan({0, 0, 0}, {0, -3, 0});
   const ObstaclePoints points = senseObstacles(planner, {1, 1, M_PI / 2}, 0);
-  EXPECT_TRUE(contains(points, -0.9, -2.1));  // the wall at (3.1, 0.1)
+  EXPECT_TRUE(hasPoint(points, -0.9, -2.1));  // the wall at (3.1, 0.1)
 }
 
 TEST(SeenFrom, IsWhereTheObstaclesAreForTheVehicleAfterItsMotion) {

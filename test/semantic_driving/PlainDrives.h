@@ -25,4 +25,15 @@ inline World open() {
                synthetic_world::GroundCover(kHalf, synthetic_world::kGrass), {});
 }
 
+/** Four barriers from the beginning on, a square without a gap.
+ * \param half from its middle to each side, m */
+inline std::vector<Events::Roadblock> barriersAround(const Eigen::Vector2d& middle, double half) {
+  const double length = 2 * half;
+  const Eigen::Vector2d x(half, 0), y(0, half);
+  return {{0, middle + x, 0, length},
+          {0, middle - x, 0, length},
+          {0, middle + y, M_PI / 2, length},
+          {0, middle - y, M_PI / 2, length}};
+}
+
 }  // namespace plain_drives

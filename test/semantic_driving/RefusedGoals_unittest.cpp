@@ -7,6 +7,7 @@
 
 #include "PaintedPlanner.h"
 #include "PlainDrives.h"
+#include "TemporaryFolder.h"
 
 using namespace plain_drives;
 
@@ -35,7 +36,7 @@ TEST(Drives, SayAtOnceThatAGoalDoesNotFitAndWhichPoseDoes) {
   EXPECT_LT(told.refusal->seconds, 15);  // it saw the wall at the beginning
   EXPECT_EQ(told.refusal->reason.find("the goal (3.60, 0.00) does not fit: wall is at ("), 0u)
       << told.refusal->reason;
-  EXPECT_NE(told.reason.find("; the nearest pose known to fit: "), std::string::npos);
+  EXPECT_TRUE(contains(told.reason, "; the nearest pose known to fit: "));
   DriveConfig config = smallConfig();  // at rest a step after its last row
   EXPECT_LT(std::abs(told.rows.back().speed),
             semantic_driving::DriveOptions::kAtRest +

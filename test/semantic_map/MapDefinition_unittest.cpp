@@ -112,7 +112,7 @@ TEST(MapDefinition, whatMrptLeavesOutInSilenceIsNamed) {
     return errorOf([&] { mapOf("[Maps]\nsemanticOctoMap_count = 1\n" + lines); });
   };
   const std::string unknown = refusal("pointMap_count = 1\n");
-  EXPECT_TRUE(contains(unknown, "pointMap_count: there is no map type")) << unknown;
+  EXPECT_TRUE(contains(unknown, "pointMap_count: there is no map type"));
   EXPECT_EQ(refusal("pointsMap_count = 1\nother = 3\n"), "");
   // MRPT itself refuses even none of what it does not know, since 2.11.3.
   EXPECT_EQ(refusal("pointMap_count = 0\n").empty(), !MSO_MRPT_AT_LEAST(2, 11, 3));

@@ -56,7 +56,7 @@ TEST_F(IcpSlam, aMisspelledOptionStopsItWithTheReason) {
       configWith("icp-slam.ini", "MappingApplication_semanticOctoMap_00_insertOpts", "maxRnage=9");
   const ProgramRun slammed = slam(ini, Plugin::Preloaded);
   EXPECT_NE(slammed.status, 0);
-  EXPECT_TRUE(contains(slammed.output, "maxRnage")) << slammed.output;
+  EXPECT_TRUE(contains(slammed.output, "maxRnage"));
 }
 
 namespace {
@@ -218,7 +218,7 @@ TEST_F(RawlogEdit, listsRawlogsWithLabeledClouds) {
   const ProgramRun listed = edit(std::string("-p ") + kPlugin + " --info -i " + kVillage);
   EXPECT_EQ(listed.status, 0);
   EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 72"));
-  EXPECT_TRUE(contains(listed.output, "LIDAR /     24")) << listed.output;
+  EXPECT_TRUE(contains(listed.output, "LIDAR /     24"));
 }
 
 TEST_F(RawlogEdit, describesTheClouds) {

@@ -12,8 +12,8 @@
 #include <fstream>
 #include <string>
 
-#include "FolderTest.h"
 #include "FullDisk.h"
+#include "TemporaryFolder.h"
 
 namespace {
 

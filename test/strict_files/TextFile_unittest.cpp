@@ -12,7 +12,7 @@
 
 #include "CommaHost.h"
 #include "CsvTable.h"
-#include "FolderTest.h"
+#include "TemporaryFolder.h"
 
 using namespace strict_files;
 

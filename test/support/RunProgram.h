@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "FolderTest.h"
+#include "TemporaryFolder.h"
 
 using Words = std::vector<std::string>;
 

@@ -153,7 +153,7 @@ TEST(SynthRawlog, writesTheSameWorldInRugdsClasses) {
         if (labelBits(*scan, row, column) == 1u << id) {
           ASSERT_EQ(labelBits(*scanInRugd, row, column), 1u << rugd.fromRaw(id));
         }
-  EXPECT_NE(contents(folder / "y.truth.yaml").find("name: rock-bed"), std::string::npos);
+  EXPECT_TRUE(contains(contents(folder / "y.truth.yaml"), "name: rock-bed"));
 }
 
 TEST(SynthRawlog, theTruthNamesClassesWhateverTheirNames) {
@@ -175,8 +175,7 @@ TEST(SynthRawlog, refusesAClassTableThatDoesNotFoldTheWorldOrIsTooLarge) {
   std::ofstream(folder / "few.yaml") << "classes:\n  - {id: 1, name: a, color: [0, 0, 0]}\n";
   const Outcome few = run(folder, "-o x.rawlog" + kSmall + "--classes few.yaml");
   EXPECT_EQ(few.status, 1);
-  EXPECT_NE(few.error.find("few.yaml: raw class id 2 is not in the class table"), std::string::npos)
-      << few.error;
+  EXPECT_TRUE(contains(few.error, "few.yaml: raw class id 2 is not in the class table"));
   std::ofstream many(folder / "many.yaml");
   many << "classes:\n";
   for (int i = 1; i <= 32; ++i)
@@ -184,8 +183,7 @@ TEST(SynthRawlog, refusesAClassTableThatDoesNotFoldTheWorldOrIsTooLarge) {
   many.close();
   const Outcome tooMany = run(folder, "-o x.rawlog" + kSmall + "--classes many.yaml");
   EXPECT_EQ(tooMany.status, 1);
-  EXPECT_NE(tooMany.error.find("32 classes, and a pixel's labels hold 31"), std::string::npos)
-      << tooMany.error;
+  EXPECT_TRUE(contains(tooMany.error, "32 classes, and a pixel's labels hold 31"));
   EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
 }
 
@@ -242,7 +240,7 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
   for (const auto& [arguments, reason] : cases) {
     const Outcome outcome = run(folder, arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_NE(outcome.error.find(reason), std::string::npos) << arguments << ": " << outcome.error;
+    EXPECT_TRUE(contains(outcome.error, reason)) << arguments << ": " << outcome.error;
   }
   EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
 }

@@ -56,15 +56,6 @@ bool Events::sensorsWork(double time) const {
                       [time](const Span& s) { return time >= s.begin && time < s.end; });
 }
 
-std::vector<Events::Roadblock> barriersAround(const Eigen::Vector2d& middle, double half) {
-  const double length = 2 * half;
-  const Eigen::Vector2d x(half, 0), y(0, half);
-  return {{0, middle + x, 0, length},
-          {0, middle - x, 0, length},
-          {0, middle + y, M_PI / 2, length},
-          {0, middle - y, M_PI / 2, length}};
-}
-
 Events::Person parsePerson(const std::string& text) {
   const auto n = parseNumbers(text, 5, 6, "BEGIN,X,Y,X2,Y2 or BEGIN,X,Y,X2,Y2,END");
   Events::Person person;
@@ -86,22 +77,15 @@ Events::Span parseSpan(const std::string& text) {
 using semantic_types::LabeledCloud;
 using synthetic_world::CameraFrame;
 using synthetic_world::CameraOptions;
-using synthetic_world::World;
 
 namespace {
 
 Eigen::Isometry3d T_robot_camera(double pitchDegrees) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << 0.25, 0, 1.2;
-  T.rotate(Eigen::AngleAxisd(pitchDegrees * M_PI / 180, Eigen::Vector3d::UnitY()));
-  return T;
+  return Eigen::Translation3d(0.25, 0, 1.2) *
+         Eigen::AngleAxisd(pitchDegrees * M_PI / 180, Eigen::Vector3d::UnitY());
 }
 
-Eigen::Isometry3d T_robot_lidar() {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << 0.1, 0, 1.4;
-  return T;
-}
+Eigen::Isometry3d T_robot_lidar() { return Eigen::Isometry3d(Eigen::Translation3d(0.1, 0, 1.4)); }
 
 /** \param emptyAt depth of pixels without a return; 0: these are left out */
 LabeledCloud cloudOf(const CameraFrame& frame, const CameraOptions& options, double emptyAt) {
@@ -181,10 +165,8 @@ semantic_navigation::NavigatorOptions withLogs(const DriveConfig& config,
 
 /** On the plane z = 0. */
 Eigen::Isometry3d isometry(const TPose2D& pose) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << pose.x, pose.y, 0;
-  T.rotate(Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ()));
-  return T;
+  return Eigen::Translation3d(pose.x, pose.y, 0) *
+         Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ());
 }
 
 void setClock(double seconds) {

@@ -39,10 +39,6 @@ struct Events {
   bool sensorsWork(double time) const;
 };
 
-/** Four barriers from the beginning on, a square without a gap.
- * \param half from its middle to each side, m */
-std::vector<Events::Roadblock> barriersAround(const Eigen::Vector2d& middle, double half);
-
 /** "BEGIN,X,Y,X2,Y2" or "BEGIN,X,Y,X2,Y2,END" \throw std::invalid_argument */
 Events::Person parsePerson(const std::string& text);
 /** "BEGIN,X,Y,DEG,LENGTH" \throw std::invalid_argument */

@@ -44,7 +44,7 @@ struct MapNode {
 /** Inner nodes that the compressed tree does not expand are cells, too. */
 struct CompressedNode : MapNode {
   const LiveCompression* compression;
-  InformationTree::Index index = 0;  ///< of an inner node of the map
+  LiveCompression::Index index = 0;  ///< of an inner node of the map
 
   CompressedNode(const SemanticOcTree& map, const LiveCompression& live)
       : MapNode(map), compression(&live) {
@@ -54,17 +54,17 @@ struct CompressedNode : MapNode {
   bool isLeaf() const { return cell.node.isLeaf() || !compression->isExpanded(index); }
   template <class F>
   void forEachChild(const F& f) const {
-    InformationTree::Index next = index + 1;
+    LiveCompression::Index next = index + 1;
     for (int i = 0; i < 8; ++i) {
       const CompressedNode child(*this, i, next);
       if (!child.cell.node) continue;
-      if (!child.cell.node.isLeaf()) next = compression->tree().end(next);
+      if (!child.cell.node.isLeaf()) next = compression->end(next);
       f(child);
     }
   }
 
  private:
-  CompressedNode(const CompressedNode& parent, int i, InformationTree::Index at)
+  CompressedNode(const CompressedNode& parent, int i, LiveCompression::Index at)
       : MapNode(parent, i), compression(parent.compression), index(at) {
     cell.around = parent.cell.around;
     mark();

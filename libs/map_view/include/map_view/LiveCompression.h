@@ -22,7 +22,7 @@ struct ViewCell : Cube {
   semantic_octree::SemanticOcTreeNode node;
   /** Tells inner nodes of the map apart; 0 for leaves. */
   std::uint64_t innerNode = 0;
-  /** In a compressed tree, InformationTree's number of the inner node: the cube's, or the smallest
+  /** In a compressed tree, LiveCompression's number of the inner node: the cube's, or the smallest
    * one around it. */
   std::int32_t around = 0;
 
@@ -44,82 +44,21 @@ struct KeyBox {
   }
 };
 
-/** What each inner node of a map tells of each term, from which the compressed trees of all weights
- * and alphas follow without the map's G-values: a node is expanded while alpha is below its own.
- * Nodes are numbered parents first, in the order of children; a node's subtree follows it. */
-class InformationTree {
+/** The compressed tree of a map whose weights and alpha change all the time. Its leaves are those
+ * of semantic-map-compress with solution(); a leaf of the map that reaches above the blocks stays
+ * one.
+ *
+ * It knows what each inner node of the map tells of each term, from which the compressed trees of
+ * all weights and alphas follow without the map's G-values: a node is expanded while alpha is below
+ * its own. Nodes are numbered parents first, in the order of children; a node's subtree follows it.
+ */
+class LiveCompression {
  public:
   using Index = std::int32_t;
 
-  /** Reads a map that keeps G-values; takes 8 bytes for each term of each inner node. The map must
-   * not change afterwards, but may drop its G-values. */
-  explicit InformationTree(semantic_octree::SemanticOcTree& map);
-
-  Index size() const { return static_cast<Index>(m_end.size()); }
-  /** Number of the node behind the last one of a subtree. */
-  Index end(Index node) const { return m_end[std::size_t(node)]; }
-  Cube cube(Index node) const;
-
-  /** Computes the nodes' alphas, see tree_abstraction::collapseAlphas(). \param weights one for
-   * each term of the map's options */
-  void setWeights(const std::vector<double>& weights);
-  /** Expanded in the trees of all alphas below. */
-  double alpha(Index node) const { return m_alphas[std::size_t(node)]; }
-  /** Known leaves of the compressed tree. */
-  std::size_t numLeaves(double alpha) const;
-  /** The compressed trees of all alphas, without what their terms tell. They look at this one. */
-  semantic_octree::AlphaTrees trees() const;
-  /** The lowest of the nodes' finite alphas above a value; the value itself if there are none. */
-  double lowestAlpha(double above) const;
-  double highestAlpha() const;
-  /** What the compressed tree of an alpha retains of each term, if there is something to retain:
-   * see semantic_octree::AbstractionMeasures::retention(). */
-  std::vector<std::optional<double>> retained(double alpha) const;
-
-  /** By node: of what is worth telling (terms with a positive weight, times that) in its block, the
-   * largest node around it that is not free, the share that the compressed tree of an alpha
-   * retains. 1 where there is nothing worth telling, and above the blocks. */
-  std::vector<float> retainedInBlocks(double alpha) const;
-
-  /** Why a node that is not free pays, or does not, at an alpha: nats for each unit of p(n). */
-  struct Balance {
-    Index node;
-    std::vector<double> divergences;  ///< JS_t(n), one for each term
-    double gain;                      ///< sum_t weight_t JS_t(n)
-    double splitEntropy;              ///< H(Pi_n): alpha times that is the price
-    double ofChildren;                ///< sum_c Pi_c G_Pi(c)
-    double gValue;                    ///< G_Pi(n) = max(0, gain - alpha H(Pi_n) + ofChildren)
-  };
-  /** The balances of the nodes that hold a voxel, the largest first. Visits what is below it. */
-  std::vector<Balance> balancesAround(const Eigen::Array3i& key, double alpha) const;
-
- private:
-  /** Nodes that hold a voxel and are not free, the largest first: places in m_charged. */
-  std::vector<std::size_t> chargedAround(const Eigen::Array3i& key) const;
-  double information(Index node, std::size_t term) const {
-    return m_information[std::size_t(node) * m_numTerms + term];
-  }
-
-  std::vector<Index> m_end;
-  std::vector<std::uint64_t> m_places;  ///< lowest keys and depth, packed
-  std::size_t m_numTerms, m_numRoots;
-  std::vector<double> m_information;  ///< node by node, its terms
-  std::vector<double> m_addedLeaves, m_alphas;
-  /** The nodes that are not free, in the same order, and their parents among them. */
-  std::vector<Index> m_charged;
-  std::vector<std::int32_t> m_parents;
-  std::vector<double> m_shares, m_prices, m_gains;
-  std::vector<double> m_weights;
-};
-
-/** The compressed tree of a map whose weights and alpha change all the time. Its leaves are those
- * of semantic-map-compress with solution(); a leaf of the map that reaches above the blocks stays
- * one. */
-class LiveCompression {
- public:
-  /** Each class that the map has, free space and what the solution weighs become terms. The map
-   * must not change any more, and keeps no G-values. \throw std::invalid_argument bad options, or
-   * an empty map. */
+  /** Each class that the map has, free space and what the solution weighs become terms; each takes
+   * 8 bytes for each inner node. The map must not change any more, and keeps no G-values.
+   * \throw std::invalid_argument bad options, or an empty map. */
   LiveCompression(SemanticOcTree& map, const AbstractionOptions& solution);
 
   /** All classes that occur in a map, each with weight 1. \param options all but the weights */
@@ -150,22 +89,36 @@ class LiveCompression {
   double lowestAlpha() const;
   double highestAlpha() const;
   /** Known leaves of the compressed tree. */
-  std::size_t numLeaves() const { return m_tree.numLeaves(m_threshold); }
-  /** Share of each term's information that the compressed tree keeps. */
-  std::vector<std::optional<double>> retained() const { return m_tree.retained(m_threshold); }
-
-  /** The share of what is worth telling in an inner node's block that the compressed tree keeps:
-   * see InformationTree::retainedInBlocks(). */
-  float retainedAround(InformationTree::Index node) const;
+  std::size_t numLeaves() const;
+  /** What the compressed tree retains of each term, if there is something to retain: see
+   * semantic_octree::AbstractionMeasures::retention(). */
+  std::vector<std::optional<double>> retained() const;
+  /** Of what is worth telling (terms with a positive weight, times that) in an inner node's block,
+   * the largest node around it that is not free, the share that the compressed tree retains. 1
+   * where there is nothing worth telling, and above the blocks. */
+  float retainedAround(Index node) const;
 
   /** The map's inner nodes. */
-  const InformationTree& tree() const { return m_tree; }
-  /** Why the tree expands those that hold a voxel, or does not: see
-   * InformationTree::balancesAround(). */
-  std::vector<InformationTree::Balance> balancesAround(const Eigen::Array3i& key) const {
-    return m_tree.balancesAround(key, alpha());
-  }
-  bool isExpanded(InformationTree::Index node) const { return m_tree.alpha(node) > m_threshold; }
+  Index size() const { return static_cast<Index>(m_end.size()); }
+  /** Number of the node behind the last one of a subtree. */
+  Index end(Index node) const { return m_end[std::size_t(node)]; }
+  Cube cube(Index node) const;
+  /** The node is expanded in the trees of all alphas below: see tree_abstraction::collapseAlphas().
+   */
+  double alphaOf(Index node) const { return m_alphas[std::size_t(node)]; }
+  bool isExpanded(Index node) const { return alphaOf(node) > m_threshold; }
+
+  /** Why a node that is not free pays, or does not, at an alpha: nats for each unit of p(n). */
+  struct Balance {
+    Index node;
+    std::vector<double> divergences;  ///< JS_t(n), one for each term
+    double gain;                      ///< sum_t weight_t JS_t(n)
+    double splitEntropy;              ///< H(Pi_n): alpha times that is the price
+    double ofChildren;                ///< sum_c Pi_c G_Pi(c)
+    double gValue;                    ///< G_Pi(n) = max(0, gain - alpha H(Pi_n) + ofChildren)
+  };
+  /** The balances of the nodes that hold a voxel, the largest first. Visits what is below it. */
+  std::vector<Balance> balancesAround(const Eigen::Array3i& key) const;
   /** Cubes in which leaves came and went since the last call; at first: all. */
   std::vector<KeyBox> takeChange();
 
@@ -176,13 +129,30 @@ class LiveCompression {
   const std::vector<tree_abstraction::InformationTerm>& terms() const {
     return m_options.weights.terms;
   }
+  void readNodes(SemanticOcTree& map);
   /** \throw std::invalid_argument they contradict each other; all stays as it was. */
   void change(const tree_abstraction::AbstractionWeights& weights);
   void findAlphas();
+  /** The compressed trees of all alphas, without what their terms tell. They look at this one. */
+  semantic_octree::AlphaTrees trees() const;
+  std::vector<float> retainedInBlocks() const;
+  /** Nodes that hold a voxel and are not free, the largest first: places in m_charged. */
+  std::vector<std::size_t> chargedAround(const Eigen::Array3i& key) const;
+  double information(Index node, std::size_t term) const {
+    return m_information[std::size_t(node) * numTerms() + term];
+  }
 
   int m_numClasses;
   AbstractionOptions m_options;
-  InformationTree m_tree;
+  std::vector<Index> m_end;
+  std::vector<std::uint64_t> m_places;  ///< lowest keys and depth, packed
+  std::size_t m_numRoots;
+  std::vector<double> m_information;  ///< node by node, its terms
+  std::vector<double> m_addedLeaves, m_alphas;
+  /** The nodes that are not free, in the same order, and their parents among them. */
+  std::vector<Index> m_charged;
+  std::vector<std::int32_t> m_parents;
+  std::vector<double> m_shares, m_prices, m_gains;
   double m_threshold = 0;                 ///< alpha, and what counts as a tie
   mutable std::vector<float> m_retained;  ///< in blocks, by node; empty: not asked for yet
   std::vector<char> m_toldExpanded;       ///< by node; empty: nothing was told

@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_planning/ground/Column.h>
+#include <semantic_planning/ground/Surface.h>
 
 #include <algorithm>
 #include <climits>

@@ -3,7 +3,6 @@
 #include <semantic_octree/Keys.h>
 #include <semantic_octree/MapFollower.h>
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_planning/ground/Column.h>
 #include <semantic_planning/ground/GroundOptions.h>
 #include <semantic_planning/ground/Surface.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>

@@ -1,9 +1,18 @@
 #pragma once
+#include <semantic_octree/Column.h>
 #include <semantic_types/ClassTable.h>
 
 #include <cstdint>
 
 namespace semantic_planning {
+
+using semantic_octree::Column;
+using semantic_octree::firstColumnOf;
+using semantic_octree::indexInTile;
+using semantic_octree::kTileColumns;
+using semantic_octree::kTileEdge;
+using semantic_octree::lastColumnOf;
+using semantic_octree::tileOf;
 
 using semantic_types::ClassId;
 

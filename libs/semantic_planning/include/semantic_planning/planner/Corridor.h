@@ -2,7 +2,7 @@
 #include <colored_graph/ClassOrder.h>
 #include <mrpt/math/TPose2D.h>
 #include <semantic_octree/SemanticOcTree.h>
-#include <semantic_planning/ground/Column.h>
+#include <semantic_planning/ground/Surface.h>
 
 #include <optional>
 #include <vector>
