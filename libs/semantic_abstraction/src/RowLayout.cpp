@@ -64,18 +64,21 @@ MSO_INLINE void transpose(UnitVector (&v)[8]) {
 }  // namespace
 
 MSO_VECTORIZED void sortOctants(const Units* values, Units* sorted) {
-  // A sorting network of 19 comparisons; each is of all octants at once.
-  static constexpr int kCompared[19][2] = {{0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6},
-                                           {3, 7}, {0, 1}, {2, 3}, {4, 5}, {6, 7}, {2, 4}, {3, 5},
-                                           {1, 4}, {3, 6}, {1, 2}, {3, 4}, {5, 6}};
   UnitVector v[8];
   std::memcpy(v, values, sizeof v);
   transpose(v);
-  for (const auto& [i, j] : kCompared) {
+  // A sorting network of 19 comparisons, each of all octants at once. Written out: in a loop over
+  // pairs of numbers the vectors would be in memory.
+  const auto order = [&v](int i, int j) MSO_ALWAYS_INLINE {
     const UnitVector low = v[i] < v[j] ? v[i] : v[j];
     v[j] = v[i] < v[j] ? v[j] : v[i];
     v[i] = low;
-  }
+  };
+  order(0, 2), order(1, 3), order(4, 6), order(5, 7);
+  order(0, 4), order(1, 5), order(2, 6), order(3, 7);
+  order(0, 1), order(2, 3), order(4, 5), order(6, 7);
+  order(2, 4), order(3, 5), order(1, 4), order(3, 6);
+  order(1, 2), order(3, 4), order(5, 6);
   transpose(v);
   std::memcpy(sorted, v, sizeof v);
 }

@@ -108,14 +108,12 @@ Units Block::highestValue() const {
 }
 
 Block::Count Block::count() const {
-  constexpr VoxelBits kFirsts = 0x0101010101010101;
-  VoxelBits any = known | known >> 4;
-  any |= any >> 2;
-  any = (any | any >> 1) & kFirsts;  // one bit per known octant
-  // The leaves' bits, one in each octant: the eighth of the copies of all eight.
-  const VoxelBits leaves = (leafOctants * kFirsts & 0x8040201008040201) + 0x7f7f7f7f7f7f7f7f;
-  const VoxelBits leaf = ((leaves | (leafOctants * kFirsts & 0x8040201008040201)) >> 7) & kFirsts;
-  return {countOf(any) + countOf(known & ~(leaf * 0xff)), countOf(any & ~leaf)};
+  const std::uint8_t any = octantsWith(known);
+  // The leaves' bits, one in each octant, then all of its.
+  VoxelBits leaves = leafOctants * VoxelBits(0x0101010101010101) & 0x8040201008040201;
+  leaves = ((leaves + 0x7f7f7f7f7f7f7f7f) >> 7 & 0x0101010101010101) * 0xff;
+  return {countOf(any) + countOf(known & ~leaves),
+          countOf(static_cast<std::uint8_t>(any & ~leafOctants))};
 }
 
 void BlockContent::setVoxel(int voxel, Units value, const ClassRecord* record) {

@@ -115,11 +115,11 @@ auto BlockUpdate<Filter>::update(Block& block, const BlockScan& scan) -> Result 
 template <typename Filter>
 void BlockUpdate<Filter>::makeRoomForRecords(Block& block, const BlockScan& scan) {
   VoxelBits room = block.recorded, opened = 0;
-  const VoxelBits touched = scan.touched();
-  for (int o = 0; o < 8; ++o) {
-    if (!block.isLeafOctant(o) || !octantOf(touched, o) || octantOf(scan.free, o) == 0xff) continue;
+  unsigned octants = block.leafOctants & octantsWith(scan.touched()) & octantsWith(~scan.free);
+  block.leafOctants &= static_cast<std::uint8_t>(~octants);
+  for (; octants; octants &= octants - 1) {
+    const int o = __builtin_ctz(octants);
     if (block.hasRecord(8 * o)) opened |= VoxelBits(0xff) << 8 * o;
-    block.leafOctants &= static_cast<std::uint8_t>(~(1u << o));
   }
   room |= opened;
   std::uint32_t rank = scan.firstHit;
@@ -196,9 +196,10 @@ bool BlockUpdate<Filter>::voxelsAgree(const Block& block, int octant) const {
 
 template <typename Filter>
 void BlockUpdate<Filter>::mergeOctants(Block& block, VoxelBits touched) {
-  for (int o = 0; o < 8; ++o) {
-    if (!octantOf(touched, o) || block.isLeafOctant(o)) continue;
-    if (block.knownIn(o) != 0xff || !voxelsAgree(block, o)) continue;
+  unsigned octants = octantsWith(touched) & ~(block.leafOctants | octantsWith(~block.known));
+  for (; octants; octants &= octants - 1) {
+    const int o = __builtin_ctz(octants);
+    if (!voxelsAgree(block, o)) continue;
     m_superfluous |= VoxelBits(0xfe) << 8 * o;  // the first voxel's record is that of all
     block.leafOctants |= static_cast<std::uint8_t>(1u << o);
   }

@@ -18,6 +18,13 @@ using VoxelBits = std::uint64_t;
 inline std::uint8_t octantOf(VoxelBits bits, int octant) {
   return static_cast<std::uint8_t>(bits >> 8 * octant);
 }
+/** A bit for each octant that has any. */
+inline std::uint8_t octantsWith(VoxelBits bits) {
+  bits |= bits >> 4;
+  bits |= bits >> 2;
+  bits |= bits >> 1;
+  return static_cast<std::uint8_t>((bits & 0x0101010101010101) * 0x0102040810204080 >> 56);
+}
 inline int countOf(VoxelBits bits) {
   bits -= bits >> 1 & 0x5555555555555555;
   bits = (bits & 0x3333333333333333) + (bits >> 2 & 0x3333333333333333);
