@@ -277,12 +277,11 @@ namespace {
 /** What of a scan is registered to each submap. */
 std::vector<LabeledCloud> samplesOf(const LabeledCloud& scan,
                                     const std::vector<const Submap*>& submaps) {
-  std::vector<LabeledCloud> samples(submaps.size());
-  for (std::size_t i = submaps.size(); i-- > 0;) {
-    const LabeledCloud& finer = i + 1 < submaps.size() ? samples[i + 1] : scan;
-    samples[i] =
-        submaps[i]->isPlanar() ? finer : thinned(finer, submaps[i]->cellSize() / 2, HUGE_VAL);
-  }
+  std::vector<LabeledCloud> samples(submaps.size(), scan);
+  if (submaps.empty() || submaps[0]->isPlanar()) return samples;
+  samples.back() = thinned(scan, submaps.back()->cellSize() / 2, HUGE_VAL);
+  for (std::size_t i = submaps.size() - 1; i > 0; --i)
+    samples[i - 1] = thinned(samples[i], submaps[i]->cellSize() / 2, HUGE_VAL);
   return samples;
 }
 

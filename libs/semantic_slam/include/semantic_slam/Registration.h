@@ -135,7 +135,8 @@ struct Registration {
  * their classes become least (P2D-NDT: Magnusson, "The Three-Dimensional Normal-Distributions
  * Transform"; with classes as in Zaganidis et al., "Integrating Deep Semantic Segmentation into 3-D
  * Point Cloud Registration"), Gauss-Newton with Geman and McClure's weights.
- * Of the points in a cube half as large as a submap's one is taken; of those in a plane, all.
+ * Of the points in a cube half as large as the finest submap's one is taken, for a coarser submap
+ * half as large as the next finer one's; of those in a plane, all.
  * \param submaps of the same points, coarse ones first; each begins where the one before ended
  * \param prior information of the guess, frame of the scan */
 Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,
