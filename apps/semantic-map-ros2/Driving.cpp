@@ -14,47 +14,12 @@
 
 namespace semantic_map_ros2 {
 
-using semantic_planning::Column;
-using semantic_planning::GroundPoint;
-using semantic_planning::kTileEdge;
-
-namespace {
-constexpr int kUnknown = -1, kBlocked = 100;
-}
-
-GroundGrid::GroundGrid(ros2::Node& node, semantic_octree::SemanticOcTree& map,
-                       const colored_graph::ClassOrder& order,
-                       const semantic_planning::PlannerOptions& options, std::vector<int> costs,
-                       std::string frame)
-    : m_order(order),
-      m_follower(map.follow()),
-      m_ground(map, options.vehicle, options.ground, order),
-      m_costs(std::move(costs)),
-      m_frame(std::move(frame)),
-      m_writes(node, "map", {true, true, 1}),
-      m_writesUpdates(node, "map_updates", {true, false, 10}) {
-  m_follower.skipTiles();
-}
-
-int GroundGrid::costAt(Column column, const std::optional<GroundPoint>& robot) const {
-  const auto surfaces = m_ground.surfaces(column);
-  if (surfaces.empty()) return kUnknown;
-  for (const auto& surface : surfaces) {
-    if (robot && !m_ground.connected(*robot, {column, surface})) continue;
-    const colored_graph::Rank rank = m_order.rank(surface.classId);
-    return !surface.drivable || rank == colored_graph::kForbidden ? kBlocked
-                                                                  : m_costs[std::size_t(rank)];
-  }
-  return kBlocked;
-}
-
 void GroundGrid::publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot) {
   if (!m_writes.isRead()) return;
-  m_ground.update(m_follower.tiles());
-  const std::vector<Column> tiles = m_ground.tiles();
-  if (tiles.empty()) return;
-  const bool isNew = grow(tiles) || m_writes.hasNewReader();
-  const auto changed = compute(tiles, T_map_robot);
+  const auto changed = m_costs.follow(T_map_robot.translation());
+  if (!m_costs.box()) return;
+  const bool isNew = !m_box || !(*m_box == *m_costs.box()) || m_writes.hasNewReader();
+  m_box = m_costs.box();
   const ros2::Header header = ros2::headerOf(stamp, m_frame);
   if (isNew || (changed && m_writesUpdates.readers() < m_writes.readers()))
     publishAll(header);
@@ -62,67 +27,25 @@ void GroundGrid::publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot
     publishUpdate(header, *changed);
 }
 
-/** A side that has to grow takes a quarter more than it needs: a map that becomes larger with each
- * scan is not sent anew each time. \return whether the cells are others, and unknown */
-bool GroundGrid::grow(const std::vector<Column>& tiles) {
-  Box box = m_box.value_or(Box{firstColumnOf(tiles.front()), lastColumnOf(tiles.front())});
-  const Box before = box;
-  for (const Column tile : tiles) {
-    const Column low = firstColumnOf(tile), high = lastColumnOf(tile);
-    box.low = {std::min(box.low.x, low.x), std::min(box.low.y, low.y)};
-    box.high = {std::max(box.high.x, high.x), std::max(box.high.y, high.y)};
-  }
-  const auto more = [&](bool grows, int length) { return m_box && grows ? length / 4 : 0; };
-  const int width = box.width(), height = box.height();
-  box.low.x -= more(box.low.x < before.low.x, width);
-  box.low.y -= more(box.low.y < before.low.y, height);
-  box.high.x += more(box.high.x > before.high.x, width);
-  box.high.y += more(box.high.y > before.high.y, height);
-  if (m_box && box.width() == before.width() && box.height() == before.height()) return false;
-  m_box = box;
-  m_cells.assign(std::size_t(box.width()) * box.height(), std::uint8_t(kUnknown));
-  return true;
-}
-
-/** \return the box around the cells that changed */
-auto GroundGrid::compute(const std::vector<Column>& tiles, const Eigen::Isometry3d& T_map_robot)
-    -> std::optional<Box> {
-  const auto& p = T_map_robot.translation();
-  const auto robot = m_ground.find(p.x(), p.y(), p.z());
-  std::optional<Box> changed;
-  for (const Column tile : tiles) {
-    const Column begin = firstColumnOf(tile), end = lastColumnOf(tile);
-    for (int y = begin.y; y <= end.y; ++y)
-      for (int x = begin.x; x <= end.x; ++x) {
-        const auto cost = std::uint8_t(costAt({x, y}, robot));
-        if (std::exchange(cell({x, y}), cost) == cost) continue;
-        if (!changed) changed = Box{{x, y}, {x, y}};
-        changed->low = {std::min(changed->low.x, x), std::min(changed->low.y, y)};
-        changed->high = {std::max(changed->high.x, x), std::max(changed->high.y, y)};
-      }
-  }
-  return changed;
-}
-
 void GroundGrid::publishAll(const ros2::Header& header) {
-  const double voxel = m_ground.voxelSize();
+  const double voxel = m_costs.voxelSize();
   ros2::OccupancyGrid message{};
   message.header = header;
   message.info.map_load_time = header.stamp;
   message.info.resolution = static_cast<float>(voxel);
   message.info.width = std::uint32_t(m_box->width());
   message.info.height = std::uint32_t(m_box->height());
-  message.info.origin.position.x = m_ground.centerOf(m_box->low.x) - voxel / 2;
-  message.info.origin.position.y = m_ground.centerOf(m_box->low.y) - voxel / 2;
+  message.info.origin.position.x = m_costs.centerOf(m_box->low.x) - voxel / 2;
+  message.info.origin.position.y = m_costs.centerOf(m_box->low.y) - voxel / 2;
   message.info.origin.orientation.w = 1;
-  ros2::refer(message.data, m_cells);
+  ros2::refer(message.data, m_costs.cells());
   m_writes.write(message);
 }
 
 void GroundGrid::publishUpdate(const ros2::Header& header, const Box& changed) {
   std::vector<std::uint8_t> cells;
   for (int y = changed.low.y; y <= changed.high.y; ++y)
-    for (int x = changed.low.x; x <= changed.high.x; ++x) cells.push_back(cell({x, y}));
+    for (int x = changed.low.x; x <= changed.high.x; ++x) cells.push_back(m_costs.at({x, y}));
   ros2::OccupancyGridUpdate message{};
   message.header = header;
   message.x = changed.low.x - m_box->low.x, message.y = changed.low.y - m_box->low.y;

@@ -1,30 +1,27 @@
 #pragma once
 #include <semantic_navigation/Navigator.h>
-#include <semantic_octree/MapFollower.h>
-#include <semantic_planning/ground/Ground.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "Complaints.h"
+#include "GroundCosts.h"
 #include "Parameters.h"
 #include "ros2/Node.h"
 
 namespace semantic_map_ros2 {
 
-/** `map`: what driving over the ground that the robot can reach costs, as nav2's static layer takes
- * it: a rank's cost, 100 where there is another thing or a forbidden class, -1 where the map knows
- * nothing. Who reads `map_updates`, too, is told what changed. */
+/** `map`: GroundCosts as messages. Who reads `map_updates`, too, is told what changed. */
 class GroundGrid {
  public:
-  /** Node and map must outlive it. \param costs by rank */
-  GroundGrid(ros2::Node& node, semantic_octree::SemanticOcTree& map,
-             const colored_graph::ClassOrder& order,
-             const semantic_planning::PlannerOptions& options, std::vector<int> costs,
-             std::string frame);
+  /** Node and costs' map must outlive it. */
+  GroundGrid(ros2::Node& node, GroundCosts costs, std::string frame)
+      : m_costs(std::move(costs)),
+        m_frame(std::move(frame)),
+        m_writes(node, "map", {true, true, 1}),
+        m_writesUpdates(node, "map_updates", {true, false, 10}) {}
 
   /** Somebody came who has nothing yet. */
   bool isAsked() { return m_writes.hasNewReader(); }
@@ -32,30 +29,13 @@ class GroundGrid {
   void publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot);
 
  private:
-  using Column = semantic_planning::Column;
-  /** Columns from the lowest to the highest. */
-  struct Box {
-    Column low, high;
-    int width() const { return high.x - low.x + 1; }
-    int height() const { return high.y - low.y + 1; }
-  };
-  int costAt(Column column, const std::optional<semantic_planning::GroundPoint>& robot) const;
-  bool grow(const std::vector<Column>& tiles);
-  std::optional<Box> compute(const std::vector<Column>& tiles,
-                             const Eigen::Isometry3d& T_map_robot);
-  std::uint8_t& cell(Column column) {
-    return m_cells[std::size_t(column.y - m_box->low.y) * m_box->width() + column.x - m_box->low.x];
-  }
+  using Box = GroundCosts::Box;
   void publishAll(const ros2::Header& header);
   void publishUpdate(const ros2::Header& header, const Box& changed);
 
-  colored_graph::ClassOrder m_order;
-  semantic_octree::MapFollower m_follower;
-  semantic_planning::Ground m_ground;
-  std::vector<int> m_costs;
+  GroundCosts m_costs;
   std::string m_frame;
-  std::optional<Box> m_box;  ///< of the cells
-  std::vector<std::uint8_t> m_cells;
+  std::optional<Box> m_box;  ///< that was published
   ros2::Publication<ros2::OccupancyGrid> m_writes;
   ros2::Publication<ros2::OccupancyGridUpdate> m_writesUpdates;
 };

@@ -58,8 +58,9 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
   if (node.order.empty()) return;
   const auto order = semantic_planning::loadClassOrder(node.order, map.classes());
   m_driving.emplace(m_node, m_parameters, m_mapper, order);
-  m_grid.emplace(m_node, map, order, m_parameters.navigation.planner, node.costsOf(order.ranks()),
-                 node.mapFrame);
+  m_grid.emplace(
+      m_node, GroundCosts(map, order, m_parameters.navigation.planner, node.costsOf(order.ranks())),
+      node.mapFrame);
 }
 
 void MappingNode::run(const StopRequest& stop) {

@@ -254,7 +254,6 @@ TEST(SensorScale, aSceneOfHalfTheSizeHasHalfTheLengths) {
                         s = SensorScale::of(cloudOf(8 * factor * smaller), false);
       EXPECT_DOUBLE_EQ(s.keyframeDistance, smaller * street.keyframeDistance);
       EXPECT_DOUBLE_EQ(s.cube, smaller * street.cube);
-      EXPECT_DOUBLE_EQ(s.registeredCube, smaller * street.registeredCube);
       EXPECT_DOUBLE_EQ(s.gridCell, smaller * street.gridCell);
       EXPECT_DOUBLE_EQ(s.loopLength, smaller * street.loopLength);
       ASSERT_EQ(s.cells.size(), street.cells.size());

@@ -1,10 +1,11 @@
+#include <semantic_octree/Keys.h>
 #include <semantic_slam/Registration.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <unordered_map>
+#include <utility>
 
 namespace semantic_slam {
 
@@ -31,8 +32,9 @@ constexpr double kScale = 9, kMatch = 9;
 /** Sines of beams' heights, up to which they are horizontal: a laser scanner, somewhat tilted. */
 constexpr float kHorizontal = 0.03f;
 
-Eigen::Array3i cubeOf(const Eigen::Vector3d& p, double edge) {
-  return (p.array() / edge).floor().cast<int>();
+Eigen::Array3i cubeIn(const Eigen::Vector3d& p, double perMeter) {
+  using semantic_octree::floorOf;
+  return {floorOf(p.x() * perMeter), floorOf(p.y() * perMeter), floorOf(p.z() * perMeter)};
 }
 
 /** 18 bits a coordinate: enough for cubes of centimeters. */
@@ -52,52 +54,123 @@ struct Normals {
   Vector6 b = Vector6::Zero();
   std::size_t covered = 0, matched = 0;
 
-  Normals(const Submap& submap, const LabeledCloud& scan, const Eigen::Isometry3d& T) {
+  /** \param near of each point, in this submap or at first of none */
+  Normals(const Submap& submap, const LabeledCloud& scan, const Eigen::Isometry3d& T,
+          std::vector<Submap::Near>& near) {
     for (std::size_t i = 0; i < scan.size(); ++i) {
-      const Eigen::Vector3d p = scan.points[i].cast<double>(), q = T * p;
+      const Eigen::Vector3d r = T.linear() * scan.points[i].cast<double>(), q = r + T.translation();
+      submap.look(q, classOf(scan, i), near[i]);
       double squared = 0;
-      const Submap::Distribution* d = submap.find(q, classOf(scan, i), squared);
+      const Submap::Distribution* d = near[i].find(q, squared);
       if (!d) continue;
       ++covered;
       matched += squared < kMatch;
-      const double root = 1 + squared / kScale, weight = 1 / (root * root);
-      Eigen::Matrix<double, 3, 6> J;  // of T poseOf(x) p
-      Eigen::Matrix3d cross;
-      cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-      J << T.linear(), -T.linear() * cross;
-      const Eigen::Matrix<double, 6, 3> JtW = J.transpose() * d->evidence * weight;
-      H += JtW * J;
-      b -= JtW * (q - d->mean);
+      const double root = 1 + squared / kScale;
+      add(d->evidence / (root * root), r, q - d->mean);
     }
+    // Of T poseOf(x) p: until here x is along the submap's axes.
+    H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
+    Matrix6 turn = Matrix6::Zero();
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T.linear();
+    H = turn.transpose() * H * turn;
+    b = turn.transpose() * b;
+  }
+
+ private:
+  /** J^T E J and J^T E off, J = (I, -r x), for a symmetric E. */
+  void add(const Eigen::Matrix3d& E, const Eigen::Vector3d& r, const Eigen::Vector3d& off) {
+    Eigen::Matrix3d F;  // E (r x)
+    for (int i = 0; i < 3; ++i) F.row(i) = E.col(i).cross(r);
+    H.topLeftCorner<3, 3>() += E;
+    H.topRightCorner<3, 3>() -= F;
+    for (int i = 0; i < 3; ++i) H.block<3, 1>(3, 3 + i) += F.col(i).cross(r);
+    const Eigen::Vector3d pull = E * off;
+    b.head<3>() -= pull;
+    b.tail<3>() -= r.cross(pull);
   }
 };
 
 }  // namespace
 
-auto Submap::cellOf(const Eigen::Vector3d& point) const -> Eigen::Array3i {
-  Eigen::Array3i cell = cubeOf(point, m_cellSize);
-  if (m_isPlanar) cell.z() = 0;
-  return cell;
+std::size_t KeyNumbers::slotOf(Key key) const {
+  const std::size_t last = m_slots.size() - 1;
+  std::size_t slot = (key * 0x9e3779b97f4a7c15u >> 32) & last;
+  while (m_slots[slot].key != key && m_slots[slot].number != kNone) slot = (slot + 1) & last;
+  return slot;
 }
 
-auto Submap::keyOf(const Eigen::Array3i& cell, ClassId id) const -> Key {
-  return pack(cell) << 8 | (m_useClasses ? id : kNoClass);
+std::uint32_t KeyNumbers::add(Key key) {
+  const std::size_t slot = slotOf(key);
+  if (m_slots[slot].number != kNone) return m_slots[slot].number;
+  m_slots[slot] = {key, m_size++};
+  if (2 * m_size < m_slots.size()) return m_size - 1;
+  std::vector<Slot> before(2 * m_slots.size());
+  before.swap(m_slots);
+  for (const Slot& taken : before)
+    if (taken.number != kNone) m_slots[slotOf(taken.key)] = taken;
+  return m_size - 1;
+}
+
+Eigen::Array3i Submap::cubeOf(const Eigen::Vector3d& point) const {
+  Eigen::Array3i cube = cubeIn(point, m_perMeter);
+  if (m_isPlanar) cube.z() = 0;
+  return cube;
+}
+
+auto Submap::keyOf(const Eigen::Array3i& cube, ClassId id) const -> Key {
+  return pack(cube) << 8 | (m_useClasses ? id : kNoClass);
+}
+
+auto Submap::cellOf(const Eigen::Array3i& cube, ClassId id) -> Cell& {
+  const std::uint32_t number = m_numbers.add(keyOf(cube, id));
+  if (number == m_cells.size()) {
+    m_cells.emplace_back();
+    m_cells.back().cube = cube;
+    m_cells.back().id = id;
+  }
+  Cell& cell = m_cells[number];
+  if (!std::exchange(cell.isNew, true)) m_new.push_back(number);
+  return cell;
 }
 
 void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud,
                  double deviation) {
   const Eigen::Matrix3d spread = deviation * deviation * Eigen::Matrix3d::Identity();
+  Cell* cell = nullptr;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = T_submap_cloud * cloud.points[i].cast<double>();
-    const Key key = keyOf(cellOf(p), classOf(cloud, i));
-    Sum& s = m_sums[key];
-    if (!s.isNew) m_new.push_back(key);
-    s.isNew = true;
+    const Eigen::Array3i cube = cubeOf(p);
+    const ClassId id = classOf(cloud, i);
+    // Neighbors in a scan often share a cube.
+    if (!cell || id != cell->id || (cube != cell->cube).any()) cell = &cellOf(cube, id);
+    Sum& s = cell->sum;
     // Relative to the cube, so that squares stay exact far from the origin.
-    const Eigen::Vector3d r = p - cellOf(p).cast<double>().matrix() * m_cellSize;
+    const Eigen::Vector3d r = p - cube.cast<double>().matrix() * m_cellSize;
     s.n += 1;
     s.sum += r;
     s.squares += r * r.transpose() + spread;
+  }
+}
+
+void Submap::add(const Submap& finer) {
+  for (const std::uint32_t number : finer.m_new) {
+    const Cell& changed = finer.m_cells[number];
+    const Eigen::Array3i cube = changed.cube.unaryExpr([](int c) { return (c - (c & 1)) / 2; });
+    const std::size_t numNew = m_new.size();
+    Sum& s = cellOf(cube, changed.id).sum;
+    if (m_new.size() == numNew) continue;  // all of its eight are in it
+    s = Sum();
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Array3i part(i & 1, i >> 1 & 1, i >> 2);
+      const std::uint32_t at = finer.m_numbers.find(finer.keyOf(2 * cube + part, changed.id));
+      if (at == KeyNumbers::kNone) continue;
+      const Sum& of = finer.m_cells[at].sum;
+      const Eigen::Vector3d corner = part.cast<double>() * finer.m_cellSize;
+      const Eigen::Matrix3d cross = corner * of.sum.transpose();
+      s.n += of.n;
+      s.sum += of.sum + of.n * corner;
+      s.squares += of.squares + cross + cross.transpose() + of.n * corner * corner.transpose();
+    }
   }
 }
 
@@ -124,42 +197,46 @@ auto Submap::distributionOf(const Sum& s) const -> Distribution {
 }
 
 void Submap::finish() {
-  for (const Key key : m_new) {
-    Sum& s = m_sums[key];
-    s.isNew = false;
-    if (s.n < (m_isPlanar ? kFewestInPlane : kFewestInSpace)) continue;
-    Eigen::Vector3d corner;
-    for (int i = 0; i < 3; ++i) {
-      const auto bits = static_cast<std::int64_t>(key >> (8 + 18 * (2 - i)) & 0x3ffff);
-      corner[i] = static_cast<double>(bits >= 0x20000 ? bits - 0x40000 : bits) * m_cellSize;
-    }
-    Distribution d = distributionOf(s);
-    d.mean += corner;
-    m_distributions[key] = d;
+  for (const std::uint32_t number : m_new) {
+    Cell& cell = m_cells[number];
+    cell.isNew = false;
+    cell.isEnough = cell.sum.n >= (m_isPlanar ? kFewestInPlane : kFewestInSpace);
+    if (!cell.isEnough) continue;
+    cell.distribution = distributionOf(cell.sum);
+    cell.distribution.mean += cell.cube.cast<double>().matrix() * m_cellSize;
   }
   m_new.clear();
 }
 
-auto Submap::find(const Eigen::Vector3d& point, ClassId id, double& squaredDistance) const
-    -> const Distribution* {
-  const Eigen::Array3i cell = cellOf(point);
-  const Distribution* best = nullptr;
-  const auto look = [&](const Eigen::Array3i& c) {
-    const auto found = m_distributions.find(keyOf(c, id));
-    if (found == m_distributions.end()) return;
-    const Eigen::Vector3d e = point - found->second.mean;
-    const double squared = e.dot(found->second.information * e);
-    if (best && squared >= squaredDistance) return;
-    best = &found->second;
-    squaredDistance = squared;
+void Submap::look(const Eigen::Vector3d& point, ClassId id, Near& near) const {
+  const Eigen::Array3i cube = cubeOf(point);
+  const Key key = keyOf(cube, id);
+  if (std::exchange(near.key, key) == key) return;
+  near.size = 0;
+  const auto lookIn = [&](Key k) {
+    const std::uint32_t number = m_numbers.find(k);
+    if (number != KeyNumbers::kNone && m_cells[number].isEnough)
+      near.distributions[near.size++] = &m_cells[number].distribution;
   };
-  look(cell);
+  lookIn(key);
   for (int axis = 0; axis < (m_isPlanar ? 2 : 3); ++axis)
     for (const int side : {-1, 1}) {
-      Eigen::Array3i beside = cell;
+      Eigen::Array3i beside = cube;
       beside[axis] += side;
-      look(beside);
+      lookIn(keyOf(beside, id));
     }
+}
+
+auto Submap::Near::find(const Eigen::Vector3d& point, double& squaredDistance) const
+    -> const Distribution* {
+  const Distribution* best = nullptr;
+  for (int i = 0; i < size; ++i) {
+    const Eigen::Vector3d e = point - distributions[i]->mean;
+    const double squared = e.dot(distributions[i]->information * e);
+    if (best && squared >= squaredDistance) continue;
+    best = distributions[i];
+    squaredDistance = squared;
+  }
   return best;
 }
 
@@ -171,45 +248,68 @@ bool isHorizontal(const LabeledCloud& cloud, const Eigen::Isometry3d& T_robot_se
 }
 
 LabeledCloud thinned(const LabeledCloud& cloud, double cubeSize, double maxRange) {
-  struct Drawn {
-    std::size_t at;        // among the thinned
-    unsigned numSeen = 0;  // in the cube
-  };
   LabeledCloud thin;
-  std::unordered_map<std::uint64_t, Drawn> cubes;
+  KeyNumbers cubes;
+  std::vector<unsigned> numSeen;  // in each cube
   std::minstd_rand random;
+  const double perMeter = 1 / cubeSize;
+  std::uint64_t last = UINT64_MAX;
+  std::uint32_t cube = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = cloud.points[i].cast<double>();
     if (!(p.norm() <= maxRange)) continue;
-    Drawn& drawn = cubes.try_emplace(pack(cubeOf(p, cubeSize)), Drawn{thin.size()}).first->second;
-    if (random() % ++drawn.numSeen != 0) continue;
-    if (drawn.at == thin.size()) {
+    const std::uint64_t key = pack(cubeIn(p, perMeter));
+    if (std::exchange(last, key) != key) cube = cubes.add(key);
+    if (cube == numSeen.size()) {
+      numSeen.push_back(0);
       thin.points.emplace_back();
       thin.classes.emplace_back();
     }
-    thin.points[drawn.at] = cloud.points[i];
-    thin.classes[drawn.at] = classOf(cloud, i);
+    if (static_cast<unsigned>(random()) % ++numSeen[cube] != 0) continue;
+    thin.points[cube] = cloud.points[i];
+    thin.classes[cube] = classOf(cloud, i);
   }
   return thin;
 }
 
+namespace {
+
+/** What of a scan is registered to each submap. */
+std::vector<LabeledCloud> samplesOf(const LabeledCloud& scan,
+                                    const std::vector<const Submap*>& submaps) {
+  std::vector<LabeledCloud> samples(submaps.size(), scan);
+  if (submaps.empty() || submaps[0]->isPlanar()) return samples;
+  samples.back() = thinned(scan, submaps.back()->cellSize() / 2, HUGE_VAL);
+  for (std::size_t i = submaps.size() - 1; i > 0; --i)
+    samples[i - 1] = thinned(samples[i], submaps[i]->cellSize() / 2, HUGE_VAL);
+  return samples;
+}
+
+}  // namespace
+
 Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,
                           const Eigen::Isometry3d& T_submap_guess, const Matrix6& prior) {
   Registration result{T_submap_guess, Matrix6::Zero(), 0, 0};
-  for (const Submap* submap : submaps)
+  const std::vector<LabeledCloud> samples = samplesOf(scan, submaps);
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    const LabeledCloud& sample = samples[k];
+    const bool isLast = k + 1 == submaps.size();
+    const double still = isLast ? kStill : kStillCoarse * submaps[k]->cellSize();
+    std::vector<Submap::Near> near(sample.size());
     for (int i = 0; i < kMostIterations; ++i) {
-      const Normals n(*submap, scan, result.T_submap_scan);
+      const Normals n(*submaps[k], sample, result.T_submap_scan, near);
       result.information = n.H;
-      result.coveredShare = static_cast<double>(n.covered) / std::max<std::size_t>(1, scan.size());
+      result.coveredShare =
+          static_cast<double>(n.covered) / std::max<std::size_t>(1, sample.size());
       result.matchedShare = static_cast<double>(n.matched) / std::max<std::size_t>(1, n.covered);
       const Vector6 off = vectorOf(T_submap_guess.inverse() * result.T_submap_scan);
       const Vector6 step =
           (n.H + prior + 1e-6 * Matrix6::Identity()).ldlt().solve(n.b - prior * off);
       if (!step.allFinite()) return result;
       result.T_submap_scan = rigid(result.T_submap_scan * poseOf(step));
-      const double still = submap == submaps.back() ? kStill : kStillCoarse * submap->cellSize();
       if (step.head<3>().norm() < still && step.tail<3>().norm() < still * kPerMeter) break;
     }
+  }
   return result;
 }
 

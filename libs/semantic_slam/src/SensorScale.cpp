@@ -23,24 +23,30 @@ double medianDistance(const LabeledCloud& cloud) {
 }  // namespace
 
 SensorScale SensorScale::of(const LabeledCloud& cloud, bool isPlanar) {
-  if (isPlanar) return {true, 0.4, 8 * kDegree, 20, 0.05, 0, {2, 1, 0.5}, 0.1, 10, 0.8};
+  if (isPlanar) return {true, 0.4, 8 * kDegree, 20, 0.05, {2, 1, 0.5}, 0.1, 10, 0.8};
   // Streets have a median of 11 m and more, rooms of 3 m. Powers of two: nearby medians act alike.
   constexpr double kStreet = 12;
   const double octaves = std::round(std::log2(std::max(medianDistance(cloud), 1e-3) / kStreet));
   const double size = std::exp2(std::clamp(octaves, -2., 0.));
-  return {false,      0.8 * size,       15 * kDegree, 10,        0.25 * size,
-          0.5 * size, {2 * size, size}, 0.4 * size,   30 * size, 0.6};
+  return {false,      0.8 * size, 15 * kDegree, 10, 0.25 * size, {2 * size, size},
+          0.4 * size, 30 * size,  0.6};
 }
 
 std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells,
                               bool useClasses, bool isPlanar, double deviation) {
   std::vector<Submap> submaps;
-  for (const double size : cells) {
-    Submap& submap = submaps.emplace_back(size, useClasses, isPlanar);
-    submap.add(cloud, Eigen::Isometry3d::Identity(), deviation);
-    submap.finish();
-  }
+  for (const double size : cells) submaps.emplace_back(size, useClasses, isPlanar);
+  submaps.back().add(cloud, Eigen::Isometry3d::Identity(), deviation);
+  finish(submaps);
   return submaps;
+}
+
+void finish(std::vector<Submap>& submaps) {
+  for (std::size_t i = submaps.size() - 1; i > 0; --i) {
+    submaps[i - 1].add(submaps[i]);
+    submaps[i].finish();
+  }
+  submaps.front().finish();
 }
 
 void LocalMap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_last_keyframe,
@@ -51,12 +57,9 @@ void LocalMap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_last_ke
     m_parts.push_back(
         {submapsOf({}, scale.cells, useClasses, scale.isPlanar), {Eigen::Isometry3d::Identity()}});
   }
-  for (Part& part : m_parts)
-    for (Submap& submap : part.submaps) {
-      submap.add(cloud, part.poses.back());
-      submap.finish();
-    }
+  for (Part& part : m_parts) part.submaps.back().add(cloud, part.poses.back());
   if (m_parts.front().poses.size() >= 2 * most) m_parts.pop_front();
+  finish(m_parts.front().submaps);  // the other one is not asked yet
 }
 
 }  // namespace semantic_slam

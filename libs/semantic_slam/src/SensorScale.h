@@ -20,7 +20,6 @@ struct SensorScale {
   double keyframeAngle = 0;     ///< radians; or turned by so much
   int submapKeyframes = 0;    ///< a scan is registered to so many keyframes, at most twice as many
   double cube = 0;            ///< m; of the points in such a cube one is kept
-  double registeredCube = 0;  ///< m; of the points in such a cube one is registered
   std::vector<double> cells;  ///< m; edges of a submap's cubes, coarse ones first
   double gridCell = 0;        ///< m; of the grids in which loops are searched
   double loopLength = 0;      ///< m; least way between a loop's ends
@@ -30,9 +29,11 @@ struct SensorScale {
   static SensorScale of(const LabeledCloud& cloud, bool isPlanar);
 };
 
-/** A submap of the cloud for each edge of cubes (m). */
+/** A submap of the cloud for each edge of cubes (m), each half of the one before. */
 std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells,
                               bool useClasses, bool isPlanar, double deviation = 0);
+/** Brings what was added to the last of such submaps into all of them. */
+void finish(std::vector<Submap>& submaps);
 
 /** What the last keyframes saw, for the next scan to be registered to. It grows with each keyframe;
  * where it has twice as many as are wanted, a second one, which began half way, takes its place

@@ -370,9 +370,7 @@ Registration SlamEngine::match(const std::vector<Submap>& submaps, const Seen& s
   std::vector<const Submap*> pointers;
   for (const Submap& submap : submaps) pointers.push_back(&submap);
   const Matrix6 known = prior + levelOf(seen.T_odometry_robot);
-  if (m_scale.registeredCube == 0) return registerScan(pointers, seen.cloud, T_submap_guess, known);
-  return registerScan(pointers, thinned(seen.cloud, m_scale.registeredCube, kFarthest),
-                      T_submap_guess, known);
+  return registerScan(pointers, seen.cloud, T_submap_guess, known);
 }
 
 }  // namespace semantic_slam
