@@ -100,7 +100,7 @@ TEST(PlaneSearch, findsNoLessThanTryingEverything) {
     const double share = best / (255. * static_cast<double>(scan.size()));
     const auto found = search.find(scan, guess, window, share - 0.01);
     ASSERT_TRUE(found) << seed;
-    const Eigen::Vector3d off = *found - guess;
+    const Eigen::Vector3d off = found->pose - guess;
     EXPECT_EQ(oracle.scoreOf(static_cast<int>(std::lround(off[2] / kStep)),
                              static_cast<int>(std::lround(off[0] / kCell)),
                              static_cast<int>(std::lround(off[1] / kCell))),
@@ -139,8 +139,8 @@ TEST(PlaneSearch, findsARobotThatMayBeAnywhereInALargePlace) {
   const PlanePoints scan = seenFrom(truth, trees, 20);
   const auto found = PlaneSearch(trees, kCell).find(scan, {0, 0, 0}, kEverywhere, 0.65);
   ASSERT_TRUE(found);
-  EXPECT_LT((found->head<2>() - truth.head<2>()).norm(), 2 * kCell);
-  EXPECT_NEAR(std::remainder((*found)[2] - truth[2], 2 * M_PI), 0, kStep);
+  EXPECT_LT((found->pose.head<2>() - truth.head<2>()).norm(), 2 * kCell);
+  EXPECT_NEAR(std::remainder(found->pose[2] - truth[2], 2 * M_PI), 0, kStep);
 }
 
 /** Where the robot is would be found, but after longer than anybody waits. */
@@ -149,4 +149,38 @@ TEST(PlaneSearch, givesUpWhereMuchIsAlike) {
   const PlanePoints bushes = field(uniform, 20000, kHalf);
   const PlanePoints scan = seenFrom({-31, 44, 96 * kStep}, bushes, 12);
   EXPECT_FALSE(PlaneSearch(bushes, kCell).find(scan, {0, 0, 0}, kEverywhere, 0.65));
+}
+
+namespace {
+
+/** A corridor of 16 m with a door each so many m; without: 0. */
+PlanePoints corridor(double pitch) {
+  PlanePoints points;
+  for (double x = 0; x < 16; x += 0.05) {
+    const bool isDoor = pitch > 0 && std::fmod(x, pitch) < 0.9;
+    points.emplace_back(x, isDoor ? 1.3 : 1);
+    points.emplace_back(x, -1);
+  }
+  return points;
+}
+
+/** Whether a robot in the middle of a corridor of what others saw is in one place alone. */
+bool isAlone(PlanePoints others, double radius) {
+  const PlanePoints scan = seenFrom({8, 0, 0}, others, 4);
+  const auto found = PlaneSearch(others, kCell).find(scan, {8, 0, 0}, {radius, 0.1}, 0.65);
+  return found && found->isAlone;
+}
+
+}  // namespace
+
+TEST(PlaneSearch, saysWhereDoorsAreAlikeThatTwoPlacesFit) {
+  EXPECT_FALSE(isAlone(corridor(3), 3.5));
+  EXPECT_TRUE(isAlone(corridor(3), 2)) << "the next door is beyond the window";
+  EXPECT_TRUE(isAlone(corridor(0), 3.5)) << "a corridor without doors is one place";
+  PlanePoints withNiche = corridor(3);
+  for (double y = 1; y < 3; y += 0.05) {
+    withNiche.emplace_back(10, y);
+    withNiche.emplace_back(11, y);
+  }
+  EXPECT_TRUE(isAlone(withNiche, 3.5)) << "what no other place has";
 }

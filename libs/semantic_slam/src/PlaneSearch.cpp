@@ -2,7 +2,9 @@
 #include "SensorScale.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 
 namespace semantic_slam {
@@ -18,6 +20,10 @@ constexpr int kReach = 3;
 constexpr std::size_t kMostLooks = 300'000'000;
 /** A column of a cloud reaches from low to high if it is so many cells high. */
 constexpr float kUpright = 3;
+/** Scores that differ by less than so many standard deviations of their difference are alike. */
+const double kAlike = 3 * std::sqrt(2);
+/** Levels of a search that found nothing, and of one that gave up. */
+constexpr int kNone = -1, kGaveUp = -2;
 
 int cellOf(double x, double cell) { return static_cast<int>(std::floor(x / cell)); }
 
@@ -124,23 +130,32 @@ class PlaneSearch::Search {
     }
   }
 
-  /** \param least a score that has to be exceeded \return with a level of -1 if there is none, or
-   * if that takes too long to find out */
-  Candidate best(int least) {
-    Candidate best{-1, 0, 0, 0, least};
+  using Places = std::set<std::array<int, 3>>;
+
+  /** \param least a score that has to be exceeded \param known places that do not count
+   * \return with a level of kNone if there is none, of kGaveUp if that takes too long to find out
+   */
+  Candidate best(int least, const Places& known = {}) const {
+    Candidate best{kNone, 0, 0, 0, least};
     std::size_t left = kMostLooks / (4 * m_cells.front().size());  // of expansions
     for (std::vector<Candidate> open = coarsest(); !open.empty();) {
       const Candidate c = open.back();
       open.pop_back();
       if (c.score <= best.score) continue;
       if (c.level == 0) {
-        best = c;
+        if (known.count({c.angle, c.x, c.y}) == 0) best = c;
         continue;
       }
-      if (left-- == 0) return {-1, 0, 0, 0, least};
+      if (left-- == 0) return {kGaveUp, 0, 0, 0, least};
       expand(c, best.score, open);
     }
     return best;
+  }
+  /** Another place is one that paths lead to from the best only through places that fit worse. A
+   * corridor without doors is one place. */
+  bool isAlone(const Candidate& place) const {
+    const int least = place.score - noiseOf(place) - 1;
+    return best(least, around(place, least)).level == kNone;
   }
   Eigen::Vector3d offsetOf(const Candidate& c) const {
     return {c.x * m_grid.m_cell, c.y * m_grid.m_cell, (c.angle - m_angles) * kAngleStep};
@@ -170,6 +185,33 @@ class PlaneSearch::Search {
     }
     std::stable_sort(open.begin() + static_cast<std::ptrdiff_t>(first), open.end(), isWorse);
   }
+  /** What two scores differ by though both places fit: each cell of the scan is a sample. */
+  int noiseOf(const Candidate& c) const {
+    const auto& cells = m_cells[static_cast<std::size_t>(c.angle)];
+    double squares = 0;
+    for (const auto& [cx, cy] : cells) squares += std::pow(m_grid.at(0, cx + c.x, cy + c.y), 2);
+    const auto n = static_cast<double>(cells.size()), mean = c.score / n;
+    const auto samples = static_cast<double>(std::set(cells.begin(), cells.end()).size());
+    return static_cast<int>(kAlike * n * std::sqrt((squares / n - mean * mean) / samples));
+  }
+  /** The places that exceed a score, from one of them to its neighbors, and so on. */
+  Places around(const Candidate& place, int least) const {
+    Places known{{place.angle, place.x, place.y}};
+    std::vector<std::array<int, 3>> open(known.begin(), known.end());
+    while (!open.empty()) {
+      const auto from = open.back();
+      open.pop_back();
+      for (int i = 0; i < 27; ++i) {
+        const std::array<int, 3> to{from[0] + i / 9 - 1, from[1] + i / 3 % 3 - 1,
+                                    from[2] + i % 3 - 1};
+        if (to[0] < 0 || to[0] > 2 * m_angles || std::abs(to[1]) > m_radius ||
+            std::abs(to[2]) > m_radius || scoreOf(0, to[0], to[1], to[2]) <= least)
+          continue;
+        if (known.insert(to).second) open.push_back(to);
+      }
+    }
+    return known;
+  }
   int scoreOf(int level, int angle, int x, int y) const {
     int score = 0;
     for (const auto& [cx, cy] : m_cells[static_cast<std::size_t>(angle)])
@@ -182,14 +224,14 @@ class PlaneSearch::Search {
   std::vector<std::vector<std::pair<int, int>>> m_cells;  ///< of the scan, turned by each angle
 };
 
-std::optional<Eigen::Vector3d> PlaneSearch::find(const PlanePoints& scan,
-                                                 const Eigen::Vector3d& guess, const Window& window,
-                                                 double least) const {
+auto PlaneSearch::find(const PlanePoints& scan, const Eigen::Vector3d& guess, const Window& window,
+                       double least) const -> std::optional<Found> {
   if (scan.empty() || m_width == 0) return std::nullopt;
-  Search search(*this, scan, guess, window);
-  const auto best = search.best(static_cast<int>(least * kBest * static_cast<double>(scan.size())));
+  const Search search(*this, scan, guess, window);
+  const double highest = kBest * static_cast<double>(scan.size());
+  const auto best = search.best(static_cast<int>(least * highest));
   if (best.level < 0) return std::nullopt;
-  return guess + search.offsetOf(best);
+  return Found{guess + search.offsetOf(best), best.score / highest, search.isAlone(best)};
 }
 
 }  // namespace semantic_slam

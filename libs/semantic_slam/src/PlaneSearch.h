@@ -28,11 +28,16 @@ class PlaneSearch {
     double radius;  ///< m, along each axis
     double angle;   ///< radians, to each side
   };
+  struct Found {
+    Eigen::Vector3d pose;  ///< x, y (m) and heading (radians)
+    double score;          ///< share of the points' highest
+    bool isAlone;          ///< no other place in the window fits as well
+  };
   /** \param guess x, y (m) and heading (radians) of the scan
    * \param least share of the points' highest score that a fit has at least
    * \return nothing if none fits so well */
-  std::optional<Eigen::Vector3d> find(const PlanePoints& scan, const Eigen::Vector3d& guess,
-                                      const Window& window, double least) const;
+  std::optional<Found> find(const PlanePoints& scan, const Eigen::Vector3d& guess,
+                            const Window& window, double least) const;
 
  private:
   struct Candidate {

@@ -11,6 +11,9 @@ namespace semantic_slam {
 
 /** Share of a stretch's points where the place that it is compared with has some, at least. */
 constexpr double kCovered = 0.3;
+/** Share of the highest score of a place that is found. Right places have .7 to .9, wrong ones up
+ * to .7. */
+constexpr double kFoundScore = 0.65;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);
 /** x, y (m) and heading (radians). */
@@ -41,8 +44,9 @@ class SlamEngine {
     Pose T_odometry_robot;
   };
   struct Keyframe {
-    Seen seen;   ///< without the cloud, if that is in the file
-    double way;  ///< from the first one, m
+    Seen seen;       ///< without the cloud, if that is in the file
+    double way;      ///< from the first one, m
+    double lostWay;  ///< of it, where scans fit nothing
     std::uint64_t place;
     std::size_t numPoints;
   };
@@ -122,14 +126,20 @@ class SlamEngine {
   // --- Loops and the reference ---
   bool closeLoops();
   /** Keyframes of before that the newest may be near, one of each visit; the nearest first. */
-  std::vector<std::size_t> placesWithin(double radius) const;
-  std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch) const;
-  /** Registers the newest keyframe's stretch to what was seen at a place, from a guess. */
-  std::optional<PoseEdge> edgeAt(std::size_t place, const Seen& then, const Seen& stretch,
-                                 const Pose& T_place_guess, double leastMatched) const;
-  /** Where the robot may be off, relative to where it was: what it has driven since, or since the
-   * last loop. \param then m of the way */
-  PlaneSearch::Window windowSince(double then) const;
+  std::vector<std::size_t> placesWithin(const std::vector<double>& ways) const;
+  /** Searches the newest keyframe's stretch around a place. */
+  std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch, double way);
+  /** Registers the newest keyframe's stretch to what some keyframes saw, nearest to a guess.
+   * \param beside so many of them to each side */
+  std::optional<PoseEdge> edgeNear(const Pose& T_map_guess, std::size_t first, std::size_t last,
+                                   std::size_t beside, const Seen& stretch,
+                                   double leastMatched) const;
+  /** From the newest keyframe to each, m: the shortest way along steps and loops. The poses of both
+   * are off by what was driven on it (Bosse et al., "Simultaneous Localization and Map Building in
+   * Large-Scale Cyclic Environments Using the Atlas Framework", 2004). */
+  std::vector<double> waysFromNewest() const;
+  /** Where the robot may be off after a way (m). */
+  PlaneSearch::Window windowAfter(double way) const;
   /** Information of what was found, by its points and by what is known of such finds at most. */
   Matrix6 bothErrors(const Matrix6& most, const Registration& found, std::size_t keyframe) const;
   /** Points of some keyframes in the frame of one of them. */
@@ -175,9 +185,9 @@ class SlamEngine {
   int m_stepScans = 1;                         ///< scans from the registration before to the last
   int m_numSmall = 0;                          ///< small steps since the last registration
   double m_wayOfOdometry = 0, m_wayOfScans = 0, m_turnOfOdometry = 0, m_turnOfScans = 0;
-  double m_lastLook = 0, m_lastLoop = 0, m_lastReferenced = 0;  ///< m of the way
-  double m_lostWay = 0;                                         ///< m since the last loop
-  std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;    ///< they may be wrong
+  double m_lastLook = 0, m_lastReferenced = 0;                ///< m of the way
+  double m_lostWay = 0;                                       ///< m where scans fit nothing
+  std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;  ///< they may be wrong
   bool m_isOptimized = true;
   std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece
   std::optional<PoseEdge> m_pendingPiece;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "SlamEngine.h"
@@ -17,9 +18,10 @@ constexpr double kLookEvery = 2;
  * most, in cells of the grid. */
 constexpr double kWindow = 10, kWindowDrift = 0.03, kLargestWindow = 100;
 constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngle = 45 * kDegree;
-/** Share of the way without registration that the robot may be off. */
-constexpr double kLostDrift = 0.3;
+/** Without registration the robot may be off as after so many times the way more. */
+constexpr double kLostMore = 9;
 constexpr std::size_t kMostPlaces = 3;
+/** Share of the highest score where poses are right already, by the first window. */
 constexpr double kLeastScore = 0.5;
 /** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
  */
@@ -50,7 +52,31 @@ auto SlamEngine::pointsOf(std::size_t first, std::size_t last, std::size_t frame
   return all;
 }
 
-std::vector<std::size_t> SlamEngine::placesWithin(double radius) const {
+std::vector<double> SlamEngine::waysFromNewest() const {
+  const std::size_t map = m_keyframes.size();
+  std::vector<double> ways(map + 1, std::numeric_limits<double>::infinity());
+  ways[map - 1] = 0;
+  bool isShorter = true;
+  const auto relax = [&](const PoseEdge& edge) {
+    double &a = ways[std::min(edge.a, map)], &b = ways[edge.b];
+    double step = 0;
+    if (!edge.isDoubtful) {
+      const Keyframe &from = m_keyframes[edge.a], &to = m_keyframes[edge.b];
+      step = to.way - from.way + kLostMore * (to.lostWay - from.lostWay);
+    }
+    isShorter |= a + step < b || b + step < a;
+    a = std::min(a, b + step);
+    b = std::min(b, a + step);
+  };
+  while (isShorter) {
+    isShorter = false;
+    std::for_each(m_edges.rbegin(), m_edges.rend(), relax);
+    std::for_each(m_edges.begin(), m_edges.end(), relax);
+  }
+  return ways;
+}
+
+std::vector<std::size_t> SlamEngine::placesWithin(const std::vector<double>& ways) const {
   const double way = m_keyframes.back().way;
   const auto distance = [this](std::size_t k) {
     return (m_poses[k].translation() - m_poses.back().translation()).norm();
@@ -59,7 +85,7 @@ std::vector<std::size_t> SlamEngine::placesWithin(double radius) const {
   std::size_t previous = 0;
   for (std::size_t k = 0; k < m_keyframes.size() && way - m_keyframes[k].way >= m_scale.loopLength;
        ++k) {
-    if (distance(k) > radius) continue;
+    if (distance(k) > 1.4 * windowAfter(ways[k]).radius) continue;
     const auto apart = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
     if (places.empty() || k - previous > apart)
       places.push_back(k);
@@ -78,13 +104,14 @@ bool SlamEngine::closeLoops() {
   const double way = m_keyframes[newest].way;
   if (way < m_lastLook + kLookEvery * m_scale.keyframeDistance) return false;
   m_lastLook = way;
-  const auto places = placesWithin(1.4 * windowSince(m_lastLoop).radius);
+  const auto ways = waysFromNewest();
+  const auto places = placesWithin(ways);
   if (places.empty()) return false;
   const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
   const Seen stretch = pointsOf(newest - std::min(newest, beside), newest, newest);
   bool moved = false;
   for (const std::size_t place : places)
-    if (const auto edge = edgeTo(place, stretch)) {
+    if (const auto edge = edgeTo(place, stretch, ways[place])) {
       const std::size_t before = m_edges.size();
       moved |= confirm(m_pendingLoops, *edge);
       if (m_edges.size() == before) continue;
@@ -93,28 +120,29 @@ bool SlamEngine::closeLoops() {
         --m_report.torn;
       }
       m_report.loops += m_edges.size() - before;
-      m_lastLoop = way;
-      m_lostWay = 0;
+      m_report.open = 0;
     }
   return moved;
 }
 
-PlaneSearch::Window SlamEngine::windowSince(double then) const {
-  const double since = m_keyframes.back().way - std::max(then, m_lastLoop);
-  return {std::min(kWindow * m_scale.gridCell + kWindowDrift * since + kLostDrift * m_lostWay,
-                   kLargestWindow * m_scale.gridCell),
-          std::min(kAngle + kAngleDrift * since, kLargestAngle)};
+PlaneSearch::Window SlamEngine::windowAfter(double way) const {
+  return {
+      std::min(kWindow * m_scale.gridCell + kWindowDrift * way, kLargestWindow * m_scale.gridCell),
+      std::min(kAngle + kAngleDrift * way, kLargestAngle)};
 }
 
-std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch) const {
+std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way) {
   const std::size_t newest = m_keyframes.size() - 1;
-  const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
+  const PlaneSearch::Window window = windowAfter(way);
+  // Wherever the robot is in the window, all that it sees was seen from these keyframes.
+  const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
+                                              window.radius / m_scale.keyframeDistance);
   const std::size_t end = m_piece && place < *m_piece ? *m_piece : newest;
+  const std::size_t first = place - std::min(place, reach);
   std::size_t last = place;
-  while (last < place + beside && last + 1 < end &&
+  while (last < place + reach && last + 1 < end &&
          m_keyframes[newest].way - m_keyframes[last + 1].way > m_scale.loopLength / 2)
     ++last;
-  const Seen then = pointsOf(place - std::min(place, beside), last, place);
   const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
   // Seen from above, height and tilt aside.
   const Eigen::Vector3d guess = flatOf(T_guess);
@@ -122,25 +150,41 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   Seen level = stretch;
   const Eigen::Matrix3f T_level = (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
   for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
-  const auto found =
-      PlaneSearch(upright(then.cloud), m_scale.gridCell)
-          .find(upright(level.cloud), guess, windowSince(m_keyframes[place].way), kLeastScore);
+  const auto found = PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
+                         .find(upright(level.cloud), guess, window, kLeastScore);
   if (!found) return std::nullopt;
-  Pose T_found = poseOfFlat(*found, T_guess(2, 3));
+  const double off = (found->pose - guess).head<2>().norm();
+  if (found->score < kFoundScore && off > kWindow * m_scale.gridCell) return std::nullopt;
+  if (!found->isAlone) {
+    ++m_report.open;
+    return std::nullopt;
+  }
+  Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
-  return edgeAt(place, then, stretch, T_found, m_scale.leastMatched);
+  return edgeNear(m_poses[place] * T_found, first, last,
+                  static_cast<std::size_t>(m_scale.submapKeyframes / 2), stretch,
+                  m_scale.leastMatched);
 }
 
-std::optional<PoseEdge> SlamEngine::edgeAt(std::size_t place, const Seen& then, const Seen& stretch,
-                                           const Pose& T_place_guess, double leastMatched) const {
+std::optional<PoseEdge> SlamEngine::edgeNear(const Pose& T_map_guess, std::size_t first,
+                                             std::size_t last, std::size_t beside,
+                                             const Seen& stretch, double leastMatched) const {
   const std::size_t newest = m_keyframes.size() - 1;
+  const auto distance = [&](std::size_t k) {
+    return (m_poses[k].translation() - T_map_guess.translation()).norm();
+  };
+  std::size_t place = first;
+  for (std::size_t k = first; k <= last; ++k)
+    if (distance(k) < distance(place)) place = k;
+  const Seen then = pointsOf(std::max(first, place - std::min(place, beside)),
+                             std::min(last, place + beside), place);
   std::vector<double> cells;
   const double finest = m_scale.cells.back();
   for (double size = (m_scale.isPlanar ? m_scale.cells.front() / finest : kCoarsest) * finest;
        size >= finest; size /= 2)
     cells.push_back(size);
-  const Registration r =
-      match(submapsOf(then.cloud, cells), stretch, T_place_guess, Matrix6::Zero());
+  const Registration r = match(submapsOf(then.cloud, cells), stretch,
+                               m_poses[place].inverse() * T_map_guess, Matrix6::Zero());
   if (r.coveredShare < kCovered || r.matchedShare < leastMatched) return std::nullopt;
   return PoseEdge{place, newest, r.T_submap_scan,
                   bothErrors(informationOf(kLoopMeters, kLoopAngle), r, newest), true};

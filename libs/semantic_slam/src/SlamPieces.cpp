@@ -9,9 +9,6 @@ namespace {
 /** Share of a stretch's points after a loss that fit what was seen before it. Stretches that follow
  * each other have .6 to 1 (1 in 20 less than .7), places that do not .1 to .6. */
 constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
-/** Share of the highest score of a place that is searched everywhere. Right places have .7 to .9,
- * wrong ones up to .7. */
-constexpr double kFoundScore = 0.65;
 /** A piece is searched when it is so long, m, and each time that it grew by the factor; first when
  * twice as long for each of the last pieces that was not found, of so many. */
 constexpr double kFirstLook = 4, kNextLook = 1.4;
@@ -106,8 +103,6 @@ bool SlamEngine::joinPiece() {
   }
   m_edges.push_back(*found);
   ++m_report.loops;
-  m_lastLoop = m_keyframes[newest].way;
-  m_lostWay = 0;
   m_piece.reset();
   optimizePoses();
   return true;
@@ -132,17 +127,8 @@ std::optional<PoseEdge> SlamEngine::findPiece() const {
   const Eigen::Vector2d middle = box.center();
   const auto found = PlaneSearch(all, cell).find(some, {middle.x(), middle.y(), 0},
                                                  {box.sizes().maxCoeff() / 2, M_PI}, kFoundScore);
-  if (!found) return std::nullopt;
-  const Pose T_found = poseOfFlat(*found);
-  const auto distance = [&](std::size_t k) {
-    return (m_poses[k].translation() - T_found.translation()).head<2>().norm();
-  };
-  std::size_t place = 0;
-  for (std::size_t k = 1; k < first; ++k)
-    if (distance(k) < distance(place)) place = k;
-  const Seen then = pointsOf(place - std::min(place, kSearched / 2),
-                             std::min(first - 1, place + kSearched / 2), place);
-  return edgeAt(place, then, stretch, m_poses[place].inverse() * T_found, kFoundMatched);
+  if (!found || !found->isAlone) return std::nullopt;
+  return edgeNear(poseOfFlat(found->pose), 0, first - 1, kSearched / 2, stretch, kFoundMatched);
 }
 
 }  // namespace semantic_slam

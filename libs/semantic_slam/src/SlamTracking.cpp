@@ -251,11 +251,11 @@ void SlamEngine::keep(Seen seen) {
     m_file->append(cloud.classes.data(), n);
     seen.cloud = {};
   }
-  m_keyframes.push_back({seen, m_report.way, place, n});  // a copy has no room to grow
+  m_keyframes.push_back({seen, m_report.way, m_lostWay, place, n});  // a copy has no room to grow
 }
 
 auto SlamEngine::seenAt(std::size_t keyframe) const -> Seen {
-  const auto& [kept, way, place, n] = m_keyframes[keyframe];
+  const auto& [kept, way, lostWay, place, n] = m_keyframes[keyframe];
   Seen seen = kept;
   if (!m_file) return seen;
   seen.cloud.points.resize(n);
@@ -330,7 +330,7 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
                                window, kTrackedScore);
   if (!found) return std::nullopt;
   const Registration r =
-      match(m_local.submaps(), seen, poseOfFlat(*found) * T_level, Matrix6::Zero());
+      match(m_local.submaps(), seen, poseOfFlat(found->pose) * T_level, Matrix6::Zero());
   if (!isCovered(r, seen) || r.matchedShare < kFitsWell) return std::nullopt;
   return r;
 }
