@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "PlannerFixture.h"
-#include "planner/PathTracing.h"
+#include "planner/PathImprovement.h"
 
 /** Paths along given stretches in a painted world, and who checks their curves. */
 class PathTest : public PlannerTest {

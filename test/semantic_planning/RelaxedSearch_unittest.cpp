@@ -192,7 +192,8 @@ TEST_F(RelaxedSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeig
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-4, 4, -2, 2, 2, 2.2, PaintedWorld::Road);  // a bridge
   const Ground ground(map(), options.vehicle, options.ground, order);
-  RelaxedField field(ground);
+  const CollisionChecker checker(ground, options.vehicle, order, options.reading);
+  RelaxedField field(checker);
   RelaxedField::Cell before;
   int upon = 0;
   for (const Column& tile : ground.tiles())

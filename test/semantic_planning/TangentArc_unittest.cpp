@@ -1,4 +1,4 @@
-#include "vehicle/TangentArc.h"
+#include "planner/PathSmoothing.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,294 @@
 
 #include <colored_graph/ColoredAStar.h>
 
-#include "LifelongSearch.h"
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "CostVector.h"
+#include "SearchParts.h"
+#include "VertexHeap.h"
 
 namespace colored_graph {
+
+/** For cost vectors of any size. */
+class ColoredReplanner::Impl {
+ public:
+  virtual ~Impl() = default;
+  virtual PathResult solve() = 0;
+  virtual void moveStart(VertexId start) = 0;
+};
+
+/** LPA* over cost vectors, from the goal towards the start. The names g and rhs are the paper's.
+ *
+ * Invariants between calls: rhs(v) = min over edges (v,w) of cost + g(w), 0 at the goal; node.next
+ * is a w that gives this minimum; v is queued exactly if g(v) != rhs(v). */
+template <int N>
+class ColoredReplanner::Search : public Impl {
+ public:
+  Search(ColoredGraph& graph, VertexId start, VertexId goal, const CostModel& model,
+         const SearchOptions& options)
+      : m_graph(graph),
+        m_start(start),
+        m_goal(goal),
+        m_model(model),
+        m_options(options),
+        m_costs(m_graph, m_model) {}
+  Search(const Search&) = delete;
+  Search& operator=(const Search&) = delete;
+
+  void moveStart(VertexId start) override {
+    if (start == m_start) return;
+    m_start = start;
+    m_startMoved = true;
+  }
+
+  PathResult solve() override {
+    m_statistics = {};
+    PathResult result;
+    const auto missing = missingEnd(m_graph, m_start, m_goal);
+    const SearchStatus status = missing ? *missing : repairOrForget();
+    if (status == SearchStatus::Found) {
+      result = assemblePath(m_graph, m_start, bestEdges());
+      result.cost = m_costs.parts(m_nodes[m_start].g);
+    }
+    result.status = status;
+    result.statistics = m_statistics;
+    return result;
+  }
+
+ private:
+  using Cost = CostVector<N>;
+
+  struct Node {
+    Cost g = Cost::infinite();
+    Cost rhs = Cost::infinite();
+    Length distance = 0;      // lower bound of the length from the start number `distanceOf`
+    unsigned distanceOf = 0;  // 0: none yet
+    VertexId next = kNoVertex;
+    const Cost& least() const { return std::min(g, rhs); }
+  };
+
+  /** [min(g, rhs) + h; min(g, rhs)]: since h is a length, the smaller second vector is the one with
+   * the larger h. */
+  struct Key {
+    Cost estimate;
+    Length distance;
+    bool operator==(const Key& o) const { return distance == o.distance && estimate == o.estimate; }
+    bool operator<(const Key& o) const {
+      const int order = compare(estimate, o.estimate);
+      return order != 0 ? order < 0 : distance > o.distance;
+    }
+  };
+
+  /** A user's function that throws may leave the invariants broken: the next call starts over. */
+  SearchStatus repairOrForget() {
+    try {
+      return repair();
+    } catch (...) {
+      m_nodes.clear();
+      throw;
+    }
+  }
+
+  SearchStatus repair() {
+    StopCheck stop(m_options);
+    catchUp();
+    bool again = true;
+    while (again) {
+      if (const auto stopped = computeShortestPath(stop)) return *stopped;
+      if (m_nodes[m_start].g.isInfinite())
+        return diagnose(m_graph, m_start, m_goal, [this](const Incidence& i) {
+          return !m_costs(i.edge, i.neighbor).isInfinite();
+        });
+      if (const auto stopped = evaluateAlongPath(stop, again)) return *stopped;
+    }
+    return SearchStatus::Found;
+  }
+
+  // --- What happened since the last call
+
+  void catchUp() {
+    const ChangeLog& log = m_graph.changes();
+    if (m_nodes.empty() || m_seen < log.begin()) {
+      startOver();
+    } else {
+      m_nodes.resize(std::max<std::size_t>(m_nodes.size(), m_graph.vertexIdEnd()));
+      m_queue.growTo(m_nodes.size());
+      if (m_startMoved) rekey();
+      repairChanged(log);
+    }
+    m_seen = log.end();
+    m_startMoved = false;
+  }
+
+  void startOver() {
+    m_nodes.assign(m_graph.vertexIdEnd(), Node());
+    m_queue.reset(m_nodes.size());
+    m_nodes[m_goal].rhs = Cost();
+    enqueue(m_goal);
+  }
+
+  /** D* Lite would leave the keys and raise k_m instead; to recompute the keys of the few queued
+   * vertices asks nothing of the lower bound but that it is consistent from each start. */
+  void rekey() {
+    ++m_startNumber;
+    m_queue.rekey([this](VertexId v) { return key(v); });
+  }
+
+  void repairChanged(const ChangeLog& log) {
+    std::vector<VertexId> changed;
+    for (std::uint64_t i = m_seen; i < log.end(); ++i) changed.push_back(log[i]);
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    for (const VertexId v : changed) {
+      m_nodes[v].distanceOf = 0;  // its id may have been given to another vertex
+      if (m_graph.containsVertex(v))
+        repairRhs(v);
+      else
+        forget(v);
+    }
+  }
+
+  /** A removed vertex: nothing hangs on it, since its neighbors are in the change log too. */
+  void forget(VertexId v) {
+    m_queue.remove(v);
+    m_nodes[v] = Node();
+  }
+
+  // --- LPA*
+
+  std::optional<SearchStatus> computeShortestPath(StopCheck& stop) {
+    while (!m_queue.empty()) {
+      const Node& start = m_nodes[m_start];
+      const bool consistent = start.g == start.rhs;
+      if (consistent && !(m_queue.top().key < key(m_start))) break;
+      if (const auto stopped = stop.inLoop()) return stopped;
+      expand(m_queue.top().vertex);
+    }
+    return std::nullopt;
+  }
+
+  void expand(VertexId v) {
+    ++m_statistics.expansions;
+    Node& node = m_nodes[v];
+    if (node.rhs < node.g) {
+      node.g = node.rhs;
+      m_queue.remove(v);
+      for (const Incidence& i : m_graph.incident(v)) lowerRhs(i, v);
+    } else {
+      node.g = Cost::infinite();
+      enqueue(v);
+      for (const Incidence& i : m_graph.incident(v))
+        if (m_nodes[i.neighbor].next == v) repairRhs(i.neighbor);
+    }
+  }
+
+  /** A vertex whose g fell offers itself to a neighbor. */
+  void lowerRhs(const Incidence& i, VertexId next) {
+    Node& node = m_nodes[i.neighbor];
+    const Cost& before = m_nodes[next].g;
+    if (node.rhs < before) return;  // whatever the edge costs
+    const Cost cost = before + m_costs(i.edge, next);
+    if (!(cost < node.rhs)) return;
+    node.rhs = cost;
+    node.next = next;
+    enqueue(i.neighbor);
+  }
+
+  void repairRhs(VertexId v) {
+    if (v == m_goal) return;
+    Node& node = m_nodes[v];
+    const auto [cost, incidence] = bestStep(v);
+    node.rhs = cost;
+    node.next = incidence.neighbor;
+    enqueue(v);
+  }
+
+  /** The edge with the least cost + g, and that cost; ties to the smaller vertex, then edge. */
+  std::pair<Cost, Incidence> bestStep(VertexId v) const {
+    std::pair<Cost, Incidence> best{Cost::infinite(), {kNoVertex, kNoEdge}};
+    for (const Incidence& i : m_graph.incident(v)) {
+      const Cost& after = m_nodes[i.neighbor].g;
+      if (best.first < after || after.isInfinite()) continue;  // whatever the edge costs
+      const Cost cost = after + m_costs(i.edge, i.neighbor);
+      const bool tie =
+          cost == best.first && !cost.isInfinite() &&
+          std::tie(i.neighbor, i.edge) < std::tie(best.second.neighbor, best.second.edge);
+      if (cost < best.first || tie) best = {cost, i};
+    }
+    return best;
+  }
+
+  /** Puts v into the queue with its present key, or out of it, as its consistency asks. */
+  void enqueue(VertexId v) {
+    if (m_nodes[v].g != m_nodes[v].rhs)
+      m_queue.set(v, key(v));
+    else
+      m_queue.remove(v);
+  }
+
+  Key key(VertexId v) {
+    Node& node = m_nodes[v];
+    if (node.distanceOf != m_startNumber) {
+      node.distanceOf = m_startNumber;
+      node.distance = m_options.lengthBound ? m_options.lengthBound(m_start, v) : 0;
+    }
+    return {node.least() + m_costs.ofLength(node.distance), node.distance};
+  }
+
+  // --- The path
+
+  /** Only after computeShortestPath(): then every vertex on the way is consistent, and g falls
+   * with each step, if only by one edge; unless the lower bound of lengths was no such thing. */
+  std::vector<EdgeId> bestEdges() const {
+    std::vector<EdgeId> edges;
+    for (VertexId v = m_start; v != m_goal;) {
+      const Incidence step = bestStep(v).second;
+      if (step.edge == kNoEdge || edges.size() >= m_graph.vertexCount())
+        throw std::invalid_argument("SearchOptions: lengthBound is not consistent");
+      edges.push_back(step.edge);
+      v = step.neighbor;
+    }
+    return edges;
+  }
+
+  /** Evaluates the path's edges from the start on; stops, and asks for another search, at the first
+   * that is worse than its lower bound. */
+  std::optional<SearchStatus> evaluateAlongPath(const StopCheck& stop, bool& again) {
+    again = false;
+    VertexId to = m_start;
+    for (const EdgeId e : bestEdges()) {
+      to = m_graph.edge(e).other(to);
+      if (m_graph.edge(e).state != EdgeState::Unevaluated) continue;
+      if (const auto stopped = stop.now()) return stopped;
+      const Cost bound = m_costs(e, to);
+      ++m_statistics.edgesEvaluated;
+      evaluateEdge(m_graph, e, m_options.evaluate);
+      m_seen = m_graph.changes().end();
+      if (m_costs(e, to) == bound) continue;
+      repairRhs(m_graph.edge(e).a);
+      repairRhs(m_graph.edge(e).b);
+      again = true;
+      break;
+    }
+    return std::nullopt;
+  }
+
+  ColoredGraph& m_graph;
+  VertexId m_start;
+  const VertexId m_goal;
+  const CostModel m_model;
+  const SearchOptions m_options;
+  const EdgeCosts<N> m_costs;
+  std::vector<Node> m_nodes;
+  VertexHeap<Key> m_queue;
+  std::uint64_t m_seen = 0;
+  bool m_startMoved = false;
+  unsigned m_startNumber = 1;
+  SearchStatistics m_statistics;
+};
 
 PathResult ColoredGraphSearch::search(ColoredGraph& graph, VertexId start, VertexId goal,
                                       const CostModel& model, const SearchOptions& options) {

@@ -50,14 +50,6 @@ class ColumnGrid {
     return {m_first.x + number % m_width, m_first.y + number / m_width};
   }
   const T* at(std::int32_t number) const { return m_tiles[static_cast<std::size_t>(number)].get(); }
-  /** Makes the rectangle, which has nothing in it yet, reach from one tile to another: no more
-   * memory is taken than that needs. */
-  void cover(Column low, Column high) {
-    m_first = low;
-    m_width = high.x - low.x + 1;
-    m_height = high.y - low.y + 1;
-    m_tiles = std::vector<std::shared_ptr<T>>(static_cast<std::size_t>(m_width) * m_height);
-  }
   /** Sets it, if it is not. */
   T& at(Column tile) {
     std::shared_ptr<T>& at = placeOf(tile);

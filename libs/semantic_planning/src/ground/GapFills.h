@@ -5,7 +5,6 @@
 #include <tuple>
 #include <vector>
 
-#include "GroundShape.h"
 #include "SurfaceTile.h"
 
 namespace semantic_planning {

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "ColumnGrid.h"
-#include "GroundShape.h"
 #include "SurfaceTile.h"
 
 namespace semantic_planning {
@@ -146,23 +145,8 @@ void keepMarks(const SurfaceTile& before, SurfaceTile& tile) {
 
 }  // namespace
 
-void GroundTiles::cover(const std::vector<Column>& tiles) {
-  if (tiles.empty()) return;
-  Column low = tiles.front(), high = low;
-  for (const Column& tile : tiles) {
-    low = {std::min(low.x, tile.x), std::min(low.y, tile.y)};
-    high = {std::max(high.x, tile.x), std::max(high.y, tile.y)};
-  }
-  m_columns.cover(low, high);
-  m_measured.cover(low, high);
-  m_fills.cover(low, high);
-  m_surfaces.cover(low, high);
-  m_obstacles.cover(low, high);
-}
-
 void GroundTiles::read(const std::vector<Column>& tiles) {
   constexpr std::size_t kManyTiles = 4 * kSquareEdge * kSquareEdge;
-  cover(tiles);
   if (tiles.size() < kManyTiles) {
     finished(updateSurfaces(tiles));
   } else {

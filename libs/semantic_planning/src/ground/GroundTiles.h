@@ -2,11 +2,9 @@
 #include <memory>
 #include <optional>
 
-#include "Clearance.h"
 #include "ColumnGrid.h"
 #include "GapFills.h"
-#include "GroundComponents.h"
-#include "GroundShape.h"
+#include "SurfaceMarks.h"
 #include "SurfaceTile.h"
 
 namespace semantic_planning {
@@ -59,8 +57,6 @@ class GroundTiles {
   const GroundComponents& components() const;
 
  private:
-  /** Makes room for tiles, before there are any. */
-  void cover(const std::vector<Column>& tiles);
   /** The stages before the surfaces. */
   void forgetStages();
   /** Makes them again, before an update, where it needs them. */

@@ -25,8 +25,11 @@ class ClassPrices {
   }
 
   double rate(colored_graph::Rank rank) const { return m_rates[static_cast<std::size_t>(rank)]; }
+  Length ofRank(colored_graph::Rank rank, Length length) const {
+    return static_cast<Length>(rate(rank) * static_cast<double>(length));
+  }
   Length of(colored_graph::GraphClass id, Length length) const {
-    return static_cast<Length>(rate(m_order.rank(id)) * static_cast<double>(length));
+    return ofRank(m_order.rank(id), length);
   }
   Length of(const colored_graph::EdgeProfile& profile) const {
     Length cost = 0;

@@ -28,6 +28,19 @@ namespace {
 
 using Cost = RelaxedField::Cost;
 
+/** The tiles of a square, and a margin of tiles around it. */
+std::vector<Column> tilesOf(Column low, int edge, int margin) {
+  std::vector<Column> tiles;
+  for (int x = low.x - margin; x < low.x + edge + margin; ++x)
+    for (int y = low.y - margin; y < low.y + edge + margin; ++y) tiles.push_back({x, y});
+  return tiles;
+}
+
+bool isAtBorder(Column c) {
+  const int x = c.x & (kTileEdge - 1), y = c.y & (kTileEdge - 1);
+  return x == 0 || y == 0 || x == kTileEdge - 1 || y == kTileEdge - 1;
+}
+
 /** The ground in parts of tiles: where the middle of a vehicle gets without leaving the tile, which
  * keeps the clearance that the smallest disc of its footprint needs. Parts are found square by
  * square when they are asked for, and kept; the ground is not. */
@@ -48,20 +61,127 @@ class CoarseGround {
     std::vector<Id> next;  ///< in other tiles, one step of the wheels away
   };
 
-  /** All must outlive this. */
   CoarseGround(const semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
-               const PlannerOptions& options);
+               const PlannerOptions& options)
+      : m_map(map),
+        m_order(order),
+        m_options(options),
+        m_radius(std::numeric_limits<double>::infinity()) {
+    for (const Disc& disc : options.vehicle.footprint.coveringDiscs())
+      m_radius = std::min(m_radius, disc.radius);
+  }
 
-  const Part& at(const Id& id);
+  const Part& at(const Id& id) {
+    makeSquare(squareOf(id.tile));
+    const std::vector<Part>& parts = *m_parts.find(id.tile);
+    return *std::find_if(parts.begin(), parts.end(),
+                         [&](const Part& part) { return part.number == id.number; });
+  }
+
   /** The nearest part to where the ground is, at most about a tile off. */
-  std::optional<Id> near(const mrpt::math::TPose2D& pose, std::optional<double> z);
+  std::optional<Id> near(const mrpt::math::TPose2D& pose, std::optional<double> z) {
+    const Column tile = tileOf({semantic_octree::keyOf(pose.x, m_map.getResolution()),
+                                semantic_octree::keyOf(pose.y, m_map.getResolution())});
+    const std::vector<Column> around = tilesOf(tile, 1, 1);
+    const Ground ground = groundIn(around);
+    const auto place = ground.find(pose.x, pose.y, z);
+    if (!place) return std::nullopt;
+    std::optional<Id> nearest;
+    int least = std::numeric_limits<int>::max();
+    const SurfaceGrid parts = partsOf(ground, around);
+    parts.forEach([&](Column t, const SurfaceTile& surfaces) {
+      forSurfacesOf(t, surfaces, [&](Column c, std::size_t i) {
+        const Surface& s = surfaces.surfaces[i];
+        const int dx = c.x - place->column.x, dy = c.y - place->column.y;
+        const int dz = int(s.z) - place->surface.z, off = dx * dx + dy * dy + dz * dz;
+        if (!s.drivable || off >= least) return;
+        least = off;
+        nearest = Id{t, s.component};
+      });
+    });
+    return nearest;
+  }
 
  private:
-  Ground groundIn(const std::vector<Column>& tiles) const;
-  SurfaceGrid partsOf(const Ground& ground, const std::vector<Column>& tiles) const;
-  void makeSquare(Column square);
-  void addParts(Column tile, const SurfaceGrid& parts, int step);
-  colored_graph::Rank rankOf(const std::vector<int>& columnsOfRank) const;
+  Ground groundIn(const std::vector<Column>& tiles) const {
+    return Ground(m_map, m_options.vehicle, m_options.ground, m_order, tiles);
+  }
+
+  /** The ground with only those surfaces drivable that a vehicle's middle may be over, and with
+   * components by that. */
+  SurfaceGrid partsOf(const Ground& ground, const std::vector<Column>& tiles) const {
+    SurfaceGrid parts;
+    for (const Column& tile : tiles) {
+      const SurfaceTile* surfaces = ground.layers().surfaces().find(tile);
+      if (!surfaces) continue;
+      SurfaceTile& marked = parts.at(tile) = *surfaces;
+      for (Surface& s : marked.surfaces)
+        s.drivable = ground.hasClearance(s, m_radius) &&
+                     m_order.rank(s.classId) != colored_graph::kForbidden;
+      markComponents(tile, marked, ground.layers().shape());
+    }
+    return parts;
+  }
+
+  /** With a ring of tiles around it, for what is next to its parts: there they have the numbers
+   * that the next square gives them, for it finds the same ground. */
+  void makeSquare(Column square) {
+    if (m_madeSquares.find(square)) return;
+    const Column low{square.x * kSquareEdge, square.y * kSquareEdge};
+    const std::vector<Column> tiles = tilesOf(low, kSquareEdge, 1);
+    const Ground ground = groundIn(tiles);
+    const SurfaceGrid parts = partsOf(ground, tiles);
+    for (const Column& tile : tilesOf(low, kSquareEdge, 0)) addParts(tile, parts, ground.step());
+    m_madeSquares.at(square) = true;
+  }
+
+  /** f(part, its column) for the parts of other tiles that the wheels get to from a surface. */
+  template <class F>
+  static void forNextTiles(const SurfaceGrid& parts, Column c, const Surface& from, int step, F f) {
+    for (int y = c.y - 1; y <= c.y + 1; ++y)
+      for (int x = c.x - 1; x <= c.x + 1; ++x) {
+        const Column tile = tileOf({x, y});
+        if (tile == tileOf(c)) continue;
+        const Surface* other = surfaceNear(parts, {x, y}, from.z, step);
+        if (other && other->drivable) f(Id{tile, other->component});
+      }
+  }
+
+  void addParts(Column tile, const SurfaceGrid& parts, int step) {
+    const SurfaceTile* surfaces = parts.find(tile);
+    if (!surfaces) return;
+    std::vector<Part> found;
+    std::vector<std::vector<int>> columnsOfRank;
+    std::vector<std::size_t> indexOf(surfaces->surfaces.size(), surfaces->surfaces.size());
+    forSurfacesOf(tile, *surfaces, [&](Column c, std::size_t i) {
+      const Surface& s = surfaces->surfaces[i];
+      if (!s.drivable) return;
+      std::size_t& index = indexOf[s.component];
+      if (index == surfaces->surfaces.size()) {
+        index = found.size();
+        found.push_back({s.component, 0, {}});
+        columnsOfRank.emplace_back(m_order.ranks());
+      }
+      ++columnsOfRank[index][m_order.rank(s.classId)];
+      std::vector<Id>& next = found[index].next;
+      if (isAtBorder(c))
+        forNextTiles(parts, c, s, step, [&](const Id& id) {
+          if (std::find(next.begin(), next.end(), id) == next.end()) next.push_back(id);
+        });
+    });
+    for (std::size_t i = 0; i < found.size(); ++i) found[i].rank = rankOf(columnsOfRank[i]);
+    if (!found.empty()) m_parts.at(tile) = std::move(found);
+  }
+
+  Rank rankOf(const std::vector<int>& columnsOfRank) const {
+    Rank rank = 0;
+    int columns = 0;
+    for (int r = 0; r < m_order.ranks() && columns < kTileEdge; ++r) {
+      columns += columnsOfRank[r];
+      if (columnsOfRank[r] > 0) rank = static_cast<Rank>(r);
+    }
+    return rank;
+  }
 
   const semantic_octree::SemanticOcTree& m_map;
   const colored_graph::ClassOrder& m_order;
@@ -70,140 +190,6 @@ class CoarseGround {
   ColumnGrid<std::vector<Part>> m_parts;
   ColumnGrid<char> m_madeSquares;
 };
-
-/** The tiles of a square, and a margin of tiles around it. */
-std::vector<Column> tilesOf(Column low, int edge, int margin) {
-  std::vector<Column> tiles;
-  for (int x = low.x - margin; x < low.x + edge + margin; ++x)
-    for (int y = low.y - margin; y < low.y + edge + margin; ++y) tiles.push_back({x, y});
-  return tiles;
-}
-
-bool isAtBorder(Column c) {
-  const int x = c.x & (kTileEdge - 1), y = c.y & (kTileEdge - 1);
-  return x == 0 || y == 0 || x == kTileEdge - 1 || y == kTileEdge - 1;
-}
-
-/** f(part, its column) for the parts of other tiles that the wheels get to from a surface. */
-template <class F>
-void forNextTiles(const SurfaceGrid& parts, Column c, const Surface& from, int step, F f) {
-  for (int y = c.y - 1; y <= c.y + 1; ++y)
-    for (int x = c.x - 1; x <= c.x + 1; ++x) {
-      const Column tile = tileOf({x, y});
-      if (tile == tileOf(c)) continue;
-      const Surface* other = surfaceNear(parts, {x, y}, from.z, step);
-      if (other && other->drivable) f(CoarseGround::Id{tile, other->component});
-    }
-}
-
-CoarseGround::CoarseGround(const semantic_octree::SemanticOcTree& map,
-                           const colored_graph::ClassOrder& order, const PlannerOptions& options)
-    : m_map(map),
-      m_order(order),
-      m_options(options),
-      m_radius(std::numeric_limits<double>::infinity()) {
-  for (const Disc& disc : options.vehicle.footprint.coveringDiscs())
-    m_radius = std::min(m_radius, disc.radius);
-}
-
-const CoarseGround::Part& CoarseGround::at(const Id& id) {
-  makeSquare(squareOf(id.tile));
-  const std::vector<Part>& parts = *m_parts.find(id.tile);
-  return *std::find_if(parts.begin(), parts.end(),
-                       [&](const Part& part) { return part.number == id.number; });
-}
-
-std::optional<CoarseGround::Id> CoarseGround::near(const mrpt::math::TPose2D& pose,
-                                                   std::optional<double> z) {
-  const Column tile = tileOf({semantic_octree::keyOf(pose.x, m_map.getResolution()),
-                              semantic_octree::keyOf(pose.y, m_map.getResolution())});
-  const std::vector<Column> around = tilesOf(tile, 1, 1);
-  const Ground ground = groundIn(around);
-  const auto place = ground.find(pose.x, pose.y, z);
-  if (!place) return std::nullopt;
-  std::optional<Id> nearest;
-  int least = std::numeric_limits<int>::max();
-  const SurfaceGrid parts = partsOf(ground, around);
-  parts.forEach([&](Column t, const SurfaceTile& surfaces) {
-    forSurfacesOf(t, surfaces, [&](Column c, std::size_t i) {
-      const Surface& s = surfaces.surfaces[i];
-      const int dx = c.x - place->column.x, dy = c.y - place->column.y;
-      const int dz = int(s.z) - place->surface.z, off = dx * dx + dy * dy + dz * dz;
-      if (!s.drivable || off >= least) return;
-      least = off;
-      nearest = Id{t, s.component};
-    });
-  });
-  return nearest;
-}
-
-Ground CoarseGround::groundIn(const std::vector<Column>& tiles) const {
-  return Ground(m_map, m_options.vehicle, m_options.ground, m_order, tiles);
-}
-
-/** The ground with only those surfaces drivable that a vehicle's middle may be over, and with
- * components by that. */
-SurfaceGrid CoarseGround::partsOf(const Ground& ground, const std::vector<Column>& tiles) const {
-  SurfaceGrid parts;
-  for (const Column& tile : tiles) {
-    const SurfaceTile* surfaces = ground.layers().surfaces().find(tile);
-    if (!surfaces) continue;
-    SurfaceTile& marked = parts.at(tile) = *surfaces;
-    for (Surface& s : marked.surfaces)
-      s.drivable =
-          ground.hasClearance(s, m_radius) && m_order.rank(s.classId) != colored_graph::kForbidden;
-    markComponents(tile, marked, ground.layers().shape());
-  }
-  return parts;
-}
-
-/** With a ring of tiles around it, for what is next to its parts: there they have the numbers that
- * the next square gives them, for it finds the same ground. */
-void CoarseGround::makeSquare(Column square) {
-  if (m_madeSquares.find(square)) return;
-  const Column low{square.x * kSquareEdge, square.y * kSquareEdge};
-  const std::vector<Column> tiles = tilesOf(low, kSquareEdge, 1);
-  const Ground ground = groundIn(tiles);
-  const SurfaceGrid parts = partsOf(ground, tiles);
-  for (const Column& tile : tilesOf(low, kSquareEdge, 0)) addParts(tile, parts, ground.step());
-  m_madeSquares.at(square) = true;
-}
-
-void CoarseGround::addParts(Column tile, const SurfaceGrid& parts, int step) {
-  const SurfaceTile* surfaces = parts.find(tile);
-  if (!surfaces) return;
-  std::vector<Part> found;
-  std::vector<std::vector<int>> columnsOfRank;
-  std::vector<std::size_t> indexOf(surfaces->surfaces.size(), surfaces->surfaces.size());
-  forSurfacesOf(tile, *surfaces, [&](Column c, std::size_t i) {
-    const Surface& s = surfaces->surfaces[i];
-    if (!s.drivable) return;
-    std::size_t& index = indexOf[s.component];
-    if (index == surfaces->surfaces.size()) {
-      index = found.size();
-      found.push_back({s.component, 0, {}});
-      columnsOfRank.emplace_back(m_order.ranks());
-    }
-    ++columnsOfRank[index][m_order.rank(s.classId)];
-    std::vector<Id>& next = found[index].next;
-    if (isAtBorder(c))
-      forNextTiles(parts, c, s, step, [&](const Id& id) {
-        if (std::find(next.begin(), next.end(), id) == next.end()) next.push_back(id);
-      });
-  });
-  for (std::size_t i = 0; i < found.size(); ++i) found[i].rank = rankOf(columnsOfRank[i]);
-  if (!found.empty()) m_parts.at(tile) = std::move(found);
-}
-
-Rank CoarseGround::rankOf(const std::vector<int>& columnsOfRank) const {
-  Rank rank = 0;
-  int columns = 0;
-  for (int r = 0; r < m_order.ranks() && columns < kTileEdge; ++r) {
-    columns += columnsOfRank[r];
-    if (columnsOfRank[r] > 0) rank = static_cast<Rank>(r);
-  }
-  return rank;
-}
 
 using Id = CoarseGround::Id;
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <queue>
 #include <utility>
 
 namespace semantic_planning {
@@ -12,115 +14,128 @@ namespace semantic_planning {
 using colored_graph::Length;
 using colored_graph::lengthDown;
 
-LatticeSearch::LatticeSearch(const std::vector<Station>& stations, const CollisionChecker& checker,
-                             const ClassPrices& prices, std::size_t span)
-    : m_checker(checker),
-      m_cost(checker.motionCost()),
-      m_prices(prices),
-      m_span(span),
-      m_gearChange(lengthDown(m_cost.gearChange())),
-      m_budget{prices.perMeter()} {
-  for (const Station& station : stations) {
-    m_places.emplace_back();
-    const bool isEnd = m_places.size() == 1 || m_places.size() == stations.size();
-    for (const GroundPose& pose : station) {
-      const mrpt::math::TPoint2D heading(std::cos(pose.pose.phi), std::sin(pose.pose.phi));
-      const bool isFree = isEnd || m_places.back().empty();
-      m_places.back().push_back({pose, heading, isFree, checker.classAt(pose), {}});
+namespace {
+
+class LatticeSearch {
+ public:
+  LatticeSearch(const std::vector<Station>& stations, const CollisionChecker& checker,
+                const ClassPrices& prices, std::size_t span)
+      : m_checker(checker),
+        m_cost(checker.motionCost()),
+        m_prices(prices),
+        m_span(span),
+        m_budget{prices.perMeter()} {
+    for (const Station& station : stations) {
+      m_places.emplace_back();
+      const bool isEnd = m_places.size() == 1 || m_places.size() == stations.size();
+      for (const GroundPose& pose : station) {
+        const mrpt::math::TPoint2D heading(std::cos(pose.pose.phi), std::sin(pose.pose.phi));
+        m_places.back().push_back({pose, heading, isEnd || m_places.back().empty()});
+      }
     }
   }
-}
 
-const LatticeSearch::Label* LatticeSearch::Place::best() const {
-  const auto& [forward, backward] = labels;
-  if (!backward.reached) return forward.reached ? &forward : nullptr;
-  return forward.reached && forward.cost < backward.cost ? &forward : &backward;
-}
-
-std::optional<std::vector<Leg>> LatticeSearch::run() {
-  for (Place& start : m_places.front()) start.labels[0].reached = true;
-  for (std::size_t i = 1; i < m_places.size(); ++i)
-    for (Place& to : m_places[i]) arriveAt(to, i);
-  const Label* label = nullptr;
-  for (const Place& goal : m_places.back()) label = goal.best();
-  if (!label) return std::nullopt;
-  std::vector<Leg> legs;
-  for (; label->before; label = label->before) legs.push_back(*label->last);
-  std::reverse(legs.begin(), legs.end());
-  return legs;
-}
-
-void LatticeSearch::arriveAt(Place& to, std::size_t station) {
-  m_origins.clear();
-  for (std::size_t i = station - std::min(station, m_span); i < station; ++i)
-    for (const Place& from : m_places[i]) addOrigin(from, to);
-  std::make_heap(m_origins.begin(), m_origins.end());
-  for (; !m_origins.empty(); m_origins.pop_back()) {
-    std::pop_heap(m_origins.begin(), m_origins.end());
-    const Origin& origin = m_origins.back();
-    if (origin.bound >= std::max(limit(to, true), limit(to, false))) return;
-    connect(*origin.place, to);
+  std::vector<Leg> run() {
+    for (Place& start : m_places.front()) start.cost = 0;
+    for (std::size_t i = 1; i < m_places.size(); ++i)
+      for (Place& to : m_places[i]) arriveAt(to, i);
+    std::vector<Leg> legs;
+    const Place* place = m_places.back().empty() ? nullptr : &m_places.back().back();
+    for (; place && place->before; place = place->before) legs.push_back(*place->last);
+    std::reverse(legs.begin(), legs.end());
+    return legs;
   }
-}
 
-void LatticeSearch::addOrigin(const Place& from, const Place& to) {
-  const auto &a = from.pose.pose, &b = to.pose.pose;
-  const double dx = b.x - a.x, dy = b.y - a.y, distance = std::hypot(dx, dy);
-  const Label* label = from.best();
-  if (!label || distance > kLongest) return;
-  const double fromAhead = from.heading.x * dx + from.heading.y * dy;
-  const double toAhead = to.heading.x * dx + to.heading.y * dy;
-  constexpr double kLeastAhead = 0.3;  // of the distance
-  if (!from.isFree && !to.isFree &&
-      (fromAhead * toAhead <= 0 ||
-       std::min(std::abs(fromAhead), std::abs(toAhead)) < kLeastAhead * distance))
-    return;
-  const auto rank = [this](const Place& place) { return m_checker.order().rank(place.classId); };
-  const ClassId better = rank(from) < rank(to) ? from.classId : to.classId;
-  const Length length = lengthDown(distance);
-  m_origins.push_back({label->cost + length + m_prices.of(better, length), &from});
-}
+ private:
+  static constexpr double kLongest = 15;  ///< curve, meters
+  static constexpr Length kUnreached = std::numeric_limits<Length>::max();
 
-Length LatticeSearch::limit(const Place& to, bool forward) const {
-  const Label &same = to.labels[forward ? 0 : 1], &other = to.labels[forward ? 1 : 0];
-  Length limit = std::numeric_limits<Length>::max();
-  if (other.reached) limit = other.cost + m_gearChange;
-  return same.reached ? std::min(limit, same.cost) : limit;
-}
+  struct Place {
+    GroundPose pose;
+    mrpt::math::TPoint2D heading;  ///< unit vector
+    bool isFree;                   ///< to connect with poses that head elsewhere
+    Length cost = kUnreached;      ///< of the best way that is known to it
+    const Place* before = nullptr;
+    const Leg* last = nullptr;
+  };
 
-void LatticeSearch::connect(const Place& from, Place& to) {
-  Slices::count(20);
-  for (const ReedsSheppCurve& curve : m_cost.curves(from.pose.pose, to.pose.pose))
-    if (curve.length() <= kLongest) connect(from, to, curve);
-}
+  /** A way that arrives at the present place, and the least that it costs. */
+  struct Way {
+    Length bound;
+    const Place* from;
+    const ReedsSheppCurve* curve;                                   ///< null: any
+    bool operator<(const Way& o) const { return o.bound < bound; }  // the least on top
+  };
 
-void LatticeSearch::connect(const Place& from, Place& to, const ReedsSheppCurve& curve) {
-  constexpr double kSlack = 1e-3;  // m: lengths are rounded
-  const auto [before, cost] = leastBefore(from, curve);
-  const bool forward = endOf(curve).forward;
-  const Length limit = this->limit(to, forward);
-  if (!before || cost >= limit) return;
-  m_budget.left = colored_graph::toMeters(limit - cost) + kSlack;
-  auto profile = m_checker.profile(curve, from.pose.z, to.pose.z, &m_budget);
-  if (!profile) return;
-  const Length whole = cost + m_prices.of(*profile);
-  if (whole >= limit) return;
-  m_legs.push_back({curve, from.pose.z, to.pose.z, std::move(*profile)});
-  to.labels[forward ? 0 : 1] = {whole, &m_legs.back(), before, true};
-}
-
-std::pair<const LatticeSearch::Label*, Length> LatticeSearch::leastBefore(
-    const Place& from, const ReedsSheppCurve& curve) const {
-  std::pair<const Label*, Length> least{nullptr, 0};
-  const CurveState begin = beginOf(curve);
-  const Length ofCurve = lengthDown(m_cost.of(curve));
-  for (const Label& label : from.labels) {
-    if (!label.reached) continue;
-    const double change = label.last ? m_cost.ofChange(endOf(label.last->curve), begin) : 0;
-    const Length cost = label.cost + ofCurve + lengthDown(change);
-    if (!least.first || cost < least.second) least = {&label, cost};
+  /** The most promising ways first. */
+  void arriveAt(Place& to, std::size_t station) {
+    m_ways = {};
+    m_curves.clear();
+    for (std::size_t i = station - std::min(station, m_span); i < station; ++i)
+      for (const Place& from : m_places[i]) addOrigin(from, to);
+    while (!m_ways.empty() && m_ways.top().bound < to.cost) {
+      const Way way = m_ways.top();
+      m_ways.pop();
+      if (way.curve)
+        drive(way, to);
+      else
+        addCurves(*way.from, to);
+    }
   }
-  return least;
+
+  void addOrigin(const Place& from, const Place& to) {
+    constexpr double kLeastAhead = 0.3;  // of the distance
+    const double dx = to.pose.pose.x - from.pose.pose.x, dy = to.pose.pose.y - from.pose.pose.y;
+    const double distance = std::hypot(dx, dy);
+    if (from.cost == kUnreached || distance > kLongest) return;
+    const double fromAhead = from.heading.x * dx + from.heading.y * dy;
+    const double toAhead = to.heading.x * dx + to.heading.y * dy;
+    if (from.isFree || to.isFree ||
+        (fromAhead * toAhead > 0 &&
+         std::min(std::abs(fromAhead), std::abs(toAhead)) >= kLeastAhead * distance))
+      m_ways.push({from.cost + lengthDown(distance), &from, nullptr});
+  }
+
+  void addCurves(const Place& from, const Place& to) {
+    Slices::count(8);
+    for (const ReedsSheppCurve& curve : m_cost.curves(from.pose.pose, to.pose.pose)) {
+      if (curve.length() > kLongest) continue;
+      Length cost = from.cost + lengthDown(m_cost.of(curve));
+      if (from.last) cost += lengthDown(m_cost.ofChange(endOf(from.last->curve), beginOf(curve)));
+      if (cost < to.cost) m_ways.push({cost, &from, &m_curves.emplace_back(curve)});
+    }
+  }
+
+  void drive(const Way& way, Place& to) {
+    constexpr double kSlack = 1e-3;  // m: lengths are rounded
+    Slices::count(20);
+    m_budget.left = colored_graph::toMeters(to.cost - way.bound) + kSlack;
+    auto profile = m_checker.profile(*way.curve, way.from->pose.z, to.pose.z, &m_budget);
+    if (!profile) return;
+    const Length cost = way.bound + m_prices.of(*profile);
+    if (cost >= to.cost) return;
+    to.cost = cost;
+    to.before = way.from;
+    to.last =
+        &m_legs.emplace_back(Leg{*way.curve, way.from->pose.z, to.pose.z, std::move(*profile)});
+  }
+
+  const CollisionChecker& m_checker;
+  const MotionCost& m_cost;
+  const ClassPrices& m_prices;
+  const std::size_t m_span;
+  std::vector<std::vector<Place>> m_places;
+  std::deque<Leg> m_legs;
+  std::priority_queue<Way> m_ways;  ///< to the present place
+  std::deque<ReedsSheppCurve> m_curves;
+  ClassBudget m_budget;
+};
+
+}  // namespace
+
+std::vector<Leg> cheapestLegs(const std::vector<Station>& stations, std::size_t span,
+                              const CollisionChecker& checker, const ClassPrices& prices) {
+  return LatticeSearch(stations, checker, prices, span).run();
 }
 
 }  // namespace semantic_planning

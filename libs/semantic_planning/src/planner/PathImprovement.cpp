@@ -3,145 +3,101 @@
 #include <semantic_planning/vehicle/PathPoint.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 
 #include "LatticeSearch.h"
 #include "PathSmoothing.h"
-#include "PathTracing.h"
 #include "PoseSearch.h"
 
 namespace semantic_planning {
+
+using colored_graph::PathResult;
+using colored_graph::SearchStatus;
+
+namespace {
+
+PlanStatus statusOf(SearchStatus status) {
+  switch (status) {
+    case SearchStatus::Found:
+      return PlanStatus::Found;
+    case SearchStatus::OnlyForbidden:
+      return PlanStatus::OnlyForbidden;
+    case SearchStatus::Cancelled:
+      return PlanStatus::Cancelled;
+    default:
+      return PlanStatus::NotConnected;
+  }
+}
+
+/** The poses along a path of the roadmap, with their arc lengths. */
+std::vector<PathPoint> tracePath(const PathResult& path, const Roadmap& roadmap,
+                                 const CollisionChecker& checker) {
+  std::vector<PathPoint> points;
+  for (std::size_t i = 0; i < path.edges.size(); ++i) {
+    const auto from = path.vertices[i];
+    appendCurve(checker.trace(roadmap.curve(path.edges[i], from), roadmap.pose(from).z), points);
+  }
+  return points;
+}
+
+/** Lengths by class, in units. */
+void setLengths(const std::vector<colored_graph::Length>& lengths, PlanResult& result) {
+  for (const colored_graph::Length length : lengths) {
+    result.lengthPerClass.push_back(colored_graph::toMeters(length));
+    result.length += result.lengthPerClass.back();
+  }
+}
+
+}  // namespace
+
+void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path) {
+  const double begin = path.empty() ? 0 : path.back().arcLength;
+  for (std::size_t i = path.empty() ? 0 : 1; i < curve.size(); ++i) {
+    path.push_back(curve[i]);
+    path.back().arcLength += begin;
+  }
+}
+
+void describePath(const PathResult& path, const Roadmap& roadmap, const CollisionChecker& checker,
+                  PlanResult& result) {
+  result.status = statusOf(path.status);
+  result.search = path.statistics;
+  if (!path.found()) {
+    result.reason = describe(path.status);
+    return;
+  }
+  result.cost = path.cost;
+  setLengths(path.lengthPerClass, result);
+  for (const auto v : path.vertices) result.vertices.push_back(roadmap.pose(v).pose);
+  result.path = tracePath(path, roadmap, checker);
+}
+
 namespace {
 using mrpt::math::TPose2D;
 
-struct BesideOptions {
-  double sideways, turn;   ///< to both sides of the path and of the direction of travel; m, radians
-  bool atGearChangesOnly;  ///< and near them
-};
-
-constexpr double kSpacing = 2.0;  // m along the path
-/** Poses head towards others so many stations farther on: straight ways join them. */
-constexpr std::array<std::size_t, 2> kStraightSteps = {2, 6};
-
 /** Where along the path its stations are: at its ends, and not too far apart between. */
-std::vector<std::size_t> pointsOf(const std::vector<PathPoint>& path, double spacing,
-                                  bool withGearChanges) {
+std::vector<std::size_t> pointsOf(const std::vector<PathPoint>& path, bool withGearChanges) {
+  constexpr double kSpacing = 2.0;  // m along the path
   std::vector<std::size_t> points{0};
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
     const bool changes = withGearChanges && path[i].forward != path[i + 1].forward;
-    if (changes || path[i].arcLength >= path[points.back()].arcLength + spacing)
+    if (changes || path[i].arcLength >= path[points.back()].arcLength + kSpacing)
       points.push_back(i);
   }
   points.push_back(path.size() - 1);
   return points;
 }
 
-std::optional<GroundPose> poseAt(const PathPoint& p, const CollisionChecker& checker) {
-  const auto pose = checker.place({p.x, p.y, p.heading}, p.z);
-  return pose && checker.fit(*pose) == Fit::Free ? pose : std::nullopt;
-}
-
-/** The direction in which a path goes on, from its points up to so far before and after one. */
-double directionAt(const std::vector<PathPoint>& path, std::size_t i, double reach) {
-  constexpr double kLeast = 0.4;  // m
+/** The direction in which a path goes on, from its points somewhat before and after one. */
+double directionAt(const std::vector<PathPoint>& path, std::size_t i) {
+  constexpr double kReach = 1.5, kLeast = 0.4;  // m
   std::size_t a = i, b = i;
-  while (a > 0 && path[i].arcLength - path[a].arcLength < reach) --a;
-  while (b + 1 < path.size() && path[b].arcLength - path[i].arcLength < reach) ++b;
+  while (a > 0 && path[i].arcLength - path[a].arcLength < kReach) --a;
+  while (b + 1 < path.size() && path[b].arcLength - path[i].arcLength < kReach) ++b;
   const double dx = path[b].x - path[a].x, dy = path[b].y - path[a].y;
   if (std::hypot(dx, dy) > kLeast) return std::atan2(dy, dx);
   return path[i].heading + (path[i].forward ? 0 : M_PI);
-}
-
-/** Arc lengths. */
-std::vector<double> gearChangesOf(const std::vector<PathPoint>& path) {
-  std::vector<double> changes;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    if (path[i].forward != path[i - 1].forward) changes.push_back(path[i - 1].arcLength);
-  return changes;
-}
-
-bool isNear(double arcLength, const std::vector<double>& places) {
-  constexpr double kNear = 8;  // m
-  return std::any_of(places.begin(), places.end(),
-                     [&](double place) { return std::abs(place - arcLength) < kNear; });
-}
-
-/** Poses of a station. */
-class StationPoses {
- public:
-  StationPoses(const PathPoint& p, const CollisionChecker& checker)
-      : m_point(p), m_checker(checker) {
-    if (const auto own = poseAt(p, checker)) m_poses.push_back(*own);
-  }
-
-  /** \param sideways from the path's point, to the left of a direction, in which the pose heads but
-   * for a turn */
-  void add(double direction, double sideways, double turn) {
-    const TPose2D pose(m_point.x - sideways * std::sin(direction),
-                       m_point.y + sideways * std::cos(direction),
-                       std::remainder(direction + turn, 2 * M_PI));
-    const auto placed = m_checker.place(pose, m_point.z);
-    if (!placed || m_checker.fit(*placed) != Fit::Free) return;
-    if (m_checker.order().rank(m_checker.classAt(*placed)) == colored_graph::kForbidden) return;
-    m_poses.push_back(*placed);
-  }
-
-  Station take() { return std::move(m_poses); }
-
- private:
-  const PathPoint& m_point;
-  const CollisionChecker& m_checker;
-  Station m_poses;
-};
-
-/** The path's ends by themselves, and what f(poses, station) adds between. */
-template <class F>
-std::vector<Station> stationsAt(const std::vector<PathPoint>& path,
-                                const std::vector<std::size_t>& points,
-                                const CollisionChecker& checker, F f) {
-  std::vector<Station> stations;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    StationPoses poses(path[points[i]], checker);
-    if (i > 0 && i + 1 < points.size()) f(poses, i);
-    stations.push_back(poses.take());
-  }
-  return stations;
-}
-
-/** Poses at the places of a path: its ends, where the gear changes, and between; with its own
- * headings and those towards places farther along it. */
-std::vector<Station> stationsOn(const std::vector<PathPoint>& path,
-                                const CollisionChecker& checker) {
-  const std::vector<std::size_t> points = pointsOf(path, kSpacing, true);
-  const auto direction = [&](std::size_t from, std::size_t to) {
-    const PathPoint &a = path[points[from]], &b = path[points[to]];
-    return std::atan2(b.y - a.y, b.x - a.x);
-  };
-  return stationsAt(path, points, checker, [&](StationPoses& poses, std::size_t i) {
-    const std::size_t last = points.size() - 1;
-    for (const std::size_t steps : kStraightSteps) {
-      poses.add(direction(i - std::min(i, steps), i), 0, 0);
-      poses.add(direction(i, std::min(last, i + steps)), 0, 0);
-    }
-  });
-}
-
-/** The poses of a path and others beside them that the vehicle fits at; its ends stay as they are.
- */
-std::vector<Station> stationsBeside(const std::vector<PathPoint>& path,
-                                    const CollisionChecker& checker, const BesideOptions& options) {
-  constexpr double kReach = 1.5;  // m
-  const std::vector<std::size_t> points = pointsOf(path, kSpacing, false);
-  const std::vector<double> changes = gearChangesOf(path);
-  return stationsAt(path, points, checker, [&](StationPoses& poses, std::size_t i) {
-    if (options.atGearChangesOnly && !isNear(path[points[i]].arcLength, changes)) return;
-    const double direction = directionAt(path, points[i], kReach);
-    for (const int side : {0, -1, 1})
-      for (const int heading : {0, -1, 1})
-        poses.add(direction, side * options.sideways, heading * options.turn);
-    poses.add(direction, 0, M_PI);
-  });
 }
 
 /** By rank, worst first, without the best; then motion cost and length. */
@@ -161,11 +117,12 @@ std::vector<std::int64_t> costOf(const PlanResult& plan, const CollisionChecker&
   return cost;
 }
 
-bool changesGear(const std::vector<PathPoint>& path) {
-  return std::adjacent_find(path.begin() + 1, path.end(),
-                            [](const PathPoint& a, const PathPoint& b) {
-                              return a.forward != b.forward;
-                            }) != path.end();
+/** Whether a path changes its gear within so many meters of one of its points. */
+bool changesGear(const std::vector<PathPoint>& path, double arcLength, double within) {
+  for (std::size_t i = 1; i + 1 < path.size(); ++i)
+    if (path[i].forward != path[i + 1].forward && std::abs(path[i].arcLength - arcLength) < within)
+      return true;
+  return false;
 }
 
 /** Makes one path cheaper, step by step. */
@@ -182,10 +139,11 @@ class Improvement {
 
  private:
   static constexpr double kTurn = 20 * M_PI / 180;
+  static constexpr double kNear = 8, kEverywhere = std::numeric_limits<double>::infinity();  // m
   static constexpr std::size_t kSpanBeside = 2, kSpanOn = 8;  // stations that a curve goes on by
 
   void improve(const std::vector<PathPoint>& way) {
-    offer(search(stationsBeside(way, m_checker, {0.6, kTurn, false}), kSpanBeside));
+    offer(search(stationsBeside(way, 0.6, kTurn, kEverywhere), kSpanBeside));
     if (!m_result.found()) return;
     changeGearLess();
     smooth();
@@ -195,15 +153,74 @@ class Improvement {
   }
 
   std::vector<Leg> search(const std::vector<Station>& stations, std::size_t span) const {
-    return LatticeSearch(stations, m_checker, m_prices, span).run().value_or(std::vector<Leg>());
+    return cheapestLegs(stations, span, m_checker, m_prices);
   }
 
   void changeGearLess() {
-    if (!changesGear(m_result.path)) return;
-    offer(search(stationsOn(m_result.path, m_checker), kSpanOn));
-    if (offer(
-            search(stationsBeside(m_result.path, m_checker, {0.3, kTurn / 2, true}), kSpanBeside)))
-      offer(search(stationsOn(m_result.path, m_checker), kSpanOn));
+    if (!changesGear(m_result.path, 0, kEverywhere)) return;
+    offer(search(stationsOn(m_result.path), kSpanOn));
+    if (offer(search(stationsBeside(m_result.path, 0.3, kTurn / 2, kNear), kSpanBeside)))
+      offer(search(stationsOn(m_result.path), kSpanOn));
+  }
+
+  /** Adds the pose that is so far to the left of a point, seen in a direction, and heads there but
+   * for a turn, if the vehicle can be there. */
+  void add(const PathPoint& p, double direction, double sideways, double turn,
+           Station& station) const {
+    const TPose2D pose(p.x - sideways * std::sin(direction), p.y + sideways * std::cos(direction),
+                       std::remainder(direction + turn, 2 * M_PI));
+    const auto placed = m_checker.place(pose, p.z);
+    if (placed && m_checker.fit(*placed) == Fit::Free &&
+        m_checker.order().rank(m_checker.classAt(*placed)) != colored_graph::kForbidden)
+      station.push_back(*placed);
+  }
+
+  /** The poses of a path at some of its points, and what f(index, its station) adds between its
+   * ends, which stay as they are. */
+  template <class F>
+  std::vector<Station> stationsAt(const std::vector<PathPoint>& path,
+                                  const std::vector<std::size_t>& points, F f) const {
+    std::vector<Station> stations;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const PathPoint& p = path[points[i]];
+      Station& station = stations.emplace_back();
+      const auto own = m_checker.place({p.x, p.y, p.heading}, p.z);
+      if (own && m_checker.fit(*own) == Fit::Free) station.push_back(*own);
+      if (i > 0 && i + 1 < points.size()) f(i, station);
+    }
+    return stations;
+  }
+
+  /** Where the gear changes, and between; with the path's own headings and those towards places
+   * farther along it, to which straight ways lead. */
+  std::vector<Station> stationsOn(const std::vector<PathPoint>& path) const {
+    const std::vector<std::size_t> points = pointsOf(path, true);
+    const auto direction = [&](std::size_t from, std::size_t to) {
+      const PathPoint &a = path[points[from]], &b = path[points[to]];
+      return std::atan2(b.y - a.y, b.x - a.x);
+    };
+    return stationsAt(path, points, [&](std::size_t i, Station& station) {
+      for (const std::size_t farther : {2u, 6u}) {  // stations
+        add(path[points[i]], direction(i - std::min(i, farther), i), 0, 0, station);
+        add(path[points[i]], direction(i, std::min(points.size() - 1, i + farther)), 0, 0, station);
+      }
+    });
+  }
+
+  /** \param sideways, turn to both sides of the path and of the direction of travel; m, radians
+   * \param within m of places where the gear changes */
+  std::vector<Station> stationsBeside(const std::vector<PathPoint>& path, double sideways,
+                                      double turn, double within) const {
+    const std::vector<std::size_t> points = pointsOf(path, false);
+    return stationsAt(path, points, [&](std::size_t i, Station& station) {
+      const PathPoint& p = path[points[i]];
+      if (within < kEverywhere && !changesGear(path, p.arcLength, within)) return;
+      const double direction = directionAt(path, points[i]);
+      for (const int side : {0, -1, 1})
+        for (const int heading : {0, -1, 1})
+          add(p, direction, side * sideways, heading * turn, station);
+      add(p, direction, 0, M_PI, station);
+    });
   }
 
   /** Where the path begins and ends: there the vehicle may have to turn around, by a way that is
@@ -231,13 +248,11 @@ class Improvement {
     PlanResult after;
     after.status = PlanStatus::Found;
     after.vertices = {legs.front().curve.from()};
-    colored_graph::PathResult lengths;
-    lengths.lengthPerClass.resize(static_cast<std::size_t>(m_checker.order().classes()));
+    std::vector<colored_graph::Length> lengths(m_checker.order().classes());
     for (const Leg& leg : legs) {
       appendCurve(m_checker.trace(leg.curve, leg.from), after.path);
       after.vertices.push_back(leg.curve.at(leg.curve.length()).pose);
-      for (const auto& stretch : leg.profile)
-        lengths.lengthPerClass[stretch.classId] += stretch.length;
+      for (const auto& stretch : leg.profile) lengths[stretch.classId] += stretch.length;
     }
     setLengths(lengths, after);
     after.cost = costOf(after, m_checker);

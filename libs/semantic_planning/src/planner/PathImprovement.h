@@ -1,12 +1,21 @@
 #pragma once
 #include <semantic_planning/planner/PlanResult.h>
 #include <semantic_planning/roadmap/CollisionChecker.h>
+#include <semantic_planning/roadmap/Roadmap.h>
 
 #include <vector>
 
 #include "ClassPrices.h"
 
 namespace semantic_planning {
+
+/** Appends a curve's points to a path; the first is where the last one ended, perhaps in another
+ * gear. */
+void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path);
+
+/** Lengths, cost and poses of a search's result, or why there is none. */
+void describePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
+                  const CollisionChecker& checker, PlanResult& result);
 
 /** What a path costs: its motion cost, and for each length in a class its rate; meters. */
 double priceOf(const PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices);

@@ -10,10 +10,88 @@
 #include <set>
 #include <tuple>
 
-#include "PathTracing.h"
-#include "vehicle/TangentArc.h"
+#include "PathImprovement.h"
 
 namespace semantic_planning {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr double kLeastCurvature = 1e-7;  // 1/m: less is none
+
+TPoint2D leftOf(double heading) { return {-std::sin(heading), std::cos(heading)}; }
+double dot(const TPoint2D& a, const TPoint2D& b) { return a.x * b.x + a.y * b.y; }
+double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
+
+TPoint2D centerOf(const TPose2D& pose, double curvature) {
+  return TPoint2D(pose.x, pose.y) + leftOf(pose.phi) * (1 / curvature);
+}
+
+/** Oriented circles touch if their centers are as far apart as their signed radii differ, a circle
+ * and a line if its center is its signed radius to the left. Both are linear in the curvature. */
+std::optional<double> curvatureInto(const TPose2D& from, const Arc& into) {
+  const TPoint2D left = leftOf(from.phi), point(from.x, from.y);
+  double above = 0, below = 0;
+  if (into.curvature == 0) {
+    const TPoint2D side = leftOf(into.begin.phi);
+    above = 1 - dot(left, side);
+    below = dot(point - TPoint2D(into.begin.x, into.begin.y), side);
+  } else {
+    const TPoint2D offset = point - centerOf(into.begin, into.curvature);
+    const double radius = 1 / into.curvature;
+    above = 2 * (dot(left, offset) + radius);
+    below = radius * radius - dot(offset, offset);
+  }
+  if (std::abs(below) < 1e-9) return std::nullopt;
+  const double curvature = above / below;
+  return std::abs(curvature) < kLeastCurvature ? 0 : curvature;
+}
+
+/** The heading of both where they meet. */
+double headingWhereTheyMeet(const TPose2D& from, double curvature, const Arc& into) {
+  if (into.curvature == 0) return into.begin.phi;
+  if (curvature == 0) return from.phi;
+  const TPoint2D apart = centerOf(from, curvature) - centerOf(into.begin, into.curvature);
+  const double sign = 1 / curvature < 1 / into.curvature ? -1 : 1;
+  return std::atan2(-sign * apart.x, sign * apart.y);
+}
+
+double along(const TPose2D& from, const TPose2D& to) {
+  return std::cos(from.phi) * (to.x - from.x) + std::sin(from.phi) * (to.y - from.y);
+}
+
+}  // namespace
+
+TPose2D Arc::at(double s) const {
+  const double phi = begin.phi + curvature * s;
+  if (curvature == 0) return {begin.x + s * std::cos(phi), begin.y + s * std::sin(phi), begin.phi};
+  return {begin.x + (std::sin(phi) - std::sin(begin.phi)) / curvature,
+          begin.y - (std::cos(phi) - std::cos(begin.phi)) / curvature, wrapped(phi)};
+}
+
+std::optional<TangentArc> tangentArc(const TPose2D& from, const Arc& into) {
+  constexpr double kMostTurn = 1.5 * M_PI, kGap = 1e-5;  // radians, m
+  const auto curvature = curvatureInto(from, into);
+  if (!curvature) return std::nullopt;
+  const double heading = headingWhereTheyMeet(from, *curvature, into);
+  TangentArc found{{from, *curvature, 0}, 0};
+  if (into.curvature != 0) found.meets = wrapped(heading - into.begin.phi) / into.curvature;
+  if (*curvature == 0) {
+    found.arc.length = along(from, into.at(found.meets));
+  } else {
+    double turn = wrapped(heading - from.phi);
+    if (turn * *curvature < 0) turn += std::copysign(2 * M_PI, *curvature);
+    if (std::abs(turn) > kMostTurn) return std::nullopt;
+    found.arc.length = turn / *curvature;
+  }
+  const TPose2D end = found.arc.at(found.arc.length);
+  if (into.curvature == 0) found.meets = along(into.begin, end);
+  const TPose2D met = into.at(found.meets);
+  if (found.arc.length <= 0 || std::hypot(end.x - met.x, end.y - met.y) > kGap) return std::nullopt;
+  return found;
+}
 
 using colored_graph::EdgeProfile;
 using colored_graph::Length;
@@ -39,7 +117,7 @@ struct Part {
 struct Replacement {
   double gain;  ///< of the price
   std::size_t before, after;
-  int leave;  ///< which one
+  std::size_t leave;  ///< which one
   double leaves;
   TangentArc tangent;
 };
@@ -140,8 +218,8 @@ class Smoothing {
   void propose(std::size_t a, std::size_t b, std::vector<Replacement>& replacements) const {
     const Arc &before = m_parts[a].arc, &after = m_parts[b].arc;
     const double most = 1 / m_checker.reedsShepp().turningRadius();
-    for (int i = -1; i < static_cast<int>(kLeaves.size()); ++i) {
-      const double leaves = i < 0 ? 0 : before.length + kLeaves[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < kLeaves.size(); ++i) {
+      const double leaves = before.length + kLeaves[i];
       if (leaves < 0) continue;
       const auto tangent = tangentArc(before.at(leaves), after);
       if (!tangent || std::abs(tangent->arc.curvature) > most || tangent->meets > after.length)
@@ -231,7 +309,6 @@ class Smoothing {
 
   bool evaluate(const Replacement& r, std::vector<Part>& parts) const {
     double z = m_checker.ground().centerOf(m_parts[r.before].z);
-    if (!mayFit(curveOf(r.tangent.arc), z, m_checker)) return false;
     for (Part& part : parts) {
       const auto begin = m_checker.place(part.arc.begin, z);
       if (!begin) return false;
@@ -250,7 +327,7 @@ class Smoothing {
   const CollisionChecker& m_checker;
   const std::vector<double> m_perMeter;
   std::vector<Part> m_parts;
-  std::set<std::tuple<int, int, int>> m_seen;
+  std::set<std::tuple<int, int, std::size_t>> m_seen;
   int m_end = 0;  ///< key of the surface where the path ends
   int m_numbers = 0, m_looks = 2000;
 };

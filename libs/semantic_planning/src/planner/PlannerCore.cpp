@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 #include "PathImprovement.h"
-#include "PathTracing.h"
 #include "Refusal.h"
 #include "ground/ColumnGrid.h"
 
@@ -41,16 +40,9 @@ std::optional<std::vector<Column>> tilesOf(const std::optional<Corridor>& corrid
 
 /** A start's trouble as the goal's. */
 PlanStatus atGoal(PlanStatus start) {
-  switch (start) {
-    case PlanStatus::StartOffGround:
-      return PlanStatus::GoalOffGround;
-    case PlanStatus::StartBlocked:
-      return PlanStatus::GoalBlocked;
-    case PlanStatus::StartForbidden:
-      return PlanStatus::GoalForbidden;
-    default:
-      return start;
-  }
+  return start == PlanStatus::StartOffGround ? PlanStatus::GoalOffGround
+         : start == PlanStatus::StartBlocked ? PlanStatus::GoalBlocked
+                                             : PlanStatus::GoalForbidden;
 }
 
 /** "the goal (25, 4) is blocked: (25.1, 3.9), 0.4 m from the goal: ground not known" */
@@ -94,7 +86,7 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
                          const std::optional<Corridor>& corridor)
     : m_follower(map.follow()),
       m_options(validated(options, map)),
-      m_corridor(corridor),
+      m_isInCorridor(corridor),
       m_ground(map, options.vehicle, options.ground, order, tilesOf(corridor, map.getResolution())),
       m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order,
                 options.reading),
@@ -176,14 +168,6 @@ colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
   return search;
 }
 
-PlanningRegion PlannerCore::region() const {
-  constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-  const double buffer = m_options.roadmap.buffer;
-  const PlanningRegion rectangle(m_startPose->pose, m_goalPose->pose,
-                                 m_corridor ? kEverywhere : buffer);
-  return m_corridor ? rectangle.near(m_corridor->way, buffer) : rectangle;
-}
-
 std::optional<PlanResult> PlannerCore::prepare(const Place& start, const Place& goal,
                                                StageClock& clock) {
   PlanResult result;
@@ -223,10 +207,13 @@ PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
 }
 
 void PlannerCore::makeRoadmap() {
+  constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   m_search->forget();
+  const PlanningRegion region(m_ground, m_startPose->pose, m_goalPose->pose,
+                              m_isInCorridor ? kEverywhere : m_options.roadmap.buffer);
   m_roadmap = std::make_unique<MapRoadmap>(*m_candidates, m_checker, m_options.roadmap,
-                                           *m_startPose, region());
-  if (m_corridor)
+                                           *m_startPose, region);
+  if (m_isInCorridor)
     m_candidates->forget();  // of a map that is too large: they take as much as ground
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
   m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
@@ -311,7 +298,7 @@ UpdateResult PlannerCore::update() {
   result.tilesChanged = change.tiles.size();
   if (m_roadmap) {
     m_roadmap->update(change.tiles, change.points);
-    const VertexPool::Counts vertices = m_roadmap->takeVertexCounts();
+    const MapRoadmap::Counts vertices = m_roadmap->takeVertexCounts();
     const Roadmap::Counts edges = m_roadmap->roadmap().takeCounts();
     result.verticesInserted = vertices.inserted;
     result.verticesRemoved = vertices.removed;

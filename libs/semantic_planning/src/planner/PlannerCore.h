@@ -117,12 +117,10 @@ class PlannerCore {
   PlanResult take(Solution solution, StageClock& clock);
   PlanResult searchRoadmap(StageClock& clock);
   PlanResult noPath(const RelaxedPath& relaxed, const Task& task) const;
-  /** Between start and goal. */
-  PlanningRegion region() const;
 
   semantic_octree::MapFollower m_follower;  ///< of what the ground has not read
   const PlannerOptions m_options;
-  const std::optional<Corridor> m_corridor;
+  const bool m_isInCorridor;
   Ground m_ground;
   CollisionChecker m_checker;
   const ClassPrices m_prices;

@@ -3,103 +3,17 @@
 #include <semantic_planning/planner/Slices.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
+#include <queue>
 #include <tuple>
+#include <unordered_map>
 
-#include "PathTracing.h"
+#include "PathImprovement.h"
+#include "RelaxedField.h"
 
 namespace semantic_planning {
-
-using colored_graph::Length;
-using colored_graph::Rank;
-
-namespace {
-
-constexpr std::array<Column, 4> kSteps = {{{1, 0}, {1, 1}, {0, 1}, {-1, 1}}};
-/** Share of a way along eight directions: ways between these are up to 8 % shorter. */
-constexpr double kShortest = 0.96;
-
-}  // namespace
-
-CostField::CostField(const GroundPose& center, double radius, const CollisionChecker& checker,
-                     const ClassPrices& prices)
-    : m_checker(checker),
-      m_prices(prices),
-      m_center(checker.ground().columnAt(center.pose.x, center.pose.y)),
-      m_reach(static_cast<int>(radius / checker.ground().voxelSize())),
-      m_field(checker.ground()) {
-  for (std::size_t i = 0; i < m_wheels.size(); ++i)
-    for (const double y : checker.wheels()) {
-      const double angle = static_cast<double>(i) * M_PI / 4;
-      const double voxels = y / checker.ground().voxelSize();
-      m_wheels[i].push_back({static_cast<int>(std::lround(-std::sin(angle) * voxels)),
-                             static_cast<int>(std::lround(std::cos(angle) * voxels))});
-    }
-}
-
-CostField::Place CostField::placeAt(const GroundPose& pose) const {
-  const Ground& ground = m_checker.ground();
-  return m_field.placeNear(ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 2 * ground.step());
-}
-
-void CostField::add(const GroundPose& pose, Length cost) {
-  if (const Place place = placeAt(pose); place.surface) reach(place, cost);
-}
-
-bool CostField::contains(Column c) const {
-  return std::max(std::abs(c.x - m_center.x), std::abs(c.y - m_center.y)) <= m_reach;
-}
-
-void CostField::reach(const Place& place, Length cost) {
-  if (!contains(place.column)) return;
-  Length& known = m_field.label(place.cell).cost;
-  if (known <= cost) return;
-  known = cost;
-  m_queue.push(cost, place.cell);
-}
-
-Length CostField::ofStep(const Place& to, std::size_t direction) const {
-  const Ground& ground = m_checker.ground();
-  const Surface* worst = nullptr;
-  Rank rank = -1;
-  for (const Column& wheel : m_wheels[direction]) {
-    const Surface* s = m_field.near({to.column.x + wheel.x, to.column.y + wheel.y}, to.surface->z,
-                                    2 * ground.step());
-    if (!s) return kUnreached;
-    if (const Rank r = m_checker.order().rank(s->classId); r > rank) worst = s, rank = r;
-  }
-  if (rank == colored_graph::kForbidden) return kUnreached;
-  const double voxels = direction % 2 ? M_SQRT2 : 1;
-  const Length length = colored_graph::lengthDown(kShortest * voxels * ground.voxelSize());
-  return length + m_prices.of(worst->classId, length);
-}
-
-/** To its neighbors, from each of which a step leads here. */
-void CostField::leave(const Place& here, Length cost) {
-  for (std::size_t i = 0; i < kSteps.size(); ++i) {
-    const Length step = ofStep(here, i);
-    if (step == kUnreached) continue;
-    for (const int side : {1, -1}) {
-      const Place from = m_field.placeNear(
-          {here.column.x + side * kSteps[i].x, here.column.y + side * kSteps[i].y}, here.surface->z,
-          m_checker.ground().step());
-      if (from.surface) reach(from, cost + step);
-    }
-  }
-}
-
-Length CostField::at(const GroundPose& pose) {
-  const Place asked = placeAt(pose);
-  if (!asked.surface || !contains(asked.column)) return kUnreached;
-  const Length& known = m_field.label(asked.cell).cost;
-  while (!m_queue.empty() && m_queue.top().first < std::min(known, m_most)) {
-    const auto [cost, cell] = m_queue.pop();
-    Slices::count(1);
-    if (cost == m_field.label(cell).cost) leave(m_field.placeOf(cell), cost);
-  }
-  return known;
-}
 
 using colored_graph::kForbidden;
 using colored_graph::Length;
@@ -110,9 +24,6 @@ namespace {
 
 constexpr double kTurns[] = {0, 1, -1, 0.5, -0.5};  // of the tightest curvature
 constexpr int kHeadings = 36;                       // that are not the same
-/** What a good way may cost: so much of what a vehicle pays that turns on the spot, and meters to
- * turn at both ends. */
-constexpr double kGood = 1.2, kTurning = 20;
 
 double stepFor(const CollisionChecker& checker) {
   constexpr double kVoxels = 2, kInTurningRadii = 0.2;
@@ -125,145 +36,217 @@ std::uint64_t bits(double number, double size, int count) {
   return static_cast<std::uint64_t>(whole) & ((std::uint64_t{1} << count) - 1);
 }
 
-}  // namespace
+/** Looks from pose to pose for the cheapest way to one of some targets, in so many poses at most:
+ * best first over short arcs and straights in both gears, of which those between poses that are
+ * much the same are dropped (as in Dolgov et al., "Path Planning for Autonomous Vehicles in Unknown
+ * Semi-structured Environments", 2010), and from these poses to the targets by the vehicle's
+ * shortest curves. What a CostField says of the rest of the way tells what is worth going on with.
+ */
+class PoseSearch {
+ public:
+  /** A place where the way may end. */
+  struct Target {
+    GroundPose pose;
+    std::optional<CurveState> state;  ///< how it goes on from there; none: not at all
+    Length rest;                      ///< what it costs from there on
+    std::size_t number;               ///< of the caller
+  };
+  struct Task {
+    GroundPose start;
+    double radius;            ///< of the square around the start that is looked at, meters
+    double reach;             ///< farthest target that a curve is tried to, meters
+    double longestCurve;      ///< of those that are tried, meters
+    double weight = 1;        ///< of what the field says: more finds a way sooner, and a worse one
+    int poses;                ///< to go on from, at most
+    int shareOfTargets;       ///< from each pose one of so many is tried
+    bool isReversed = false;  ///< the way is one that is driven from its end to its begin
+  };
+  /** The best way that was found. */
+  struct Way {
+    std::vector<PathPoint> path;
+    std::size_t target;  ///< its number
+  };
 
-PoseSearch::PoseSearch(const Task& task, const CollisionChecker& checker, const ClassPrices& prices)
-    : m_task(task),
-      m_checker(checker),
-      m_prices(prices),
-      m_step(stepFor(checker)),
-      m_field(task.start, task.radius, checker, prices),
-      m_budget{prices.perMeter()},
-      m_left(task.poses) {}
+  PoseSearch(const Task& task, const CollisionChecker& checker, const ClassPrices& prices)
+      : m_task(task),
+        m_checker(checker),
+        m_prices(prices),
+        m_step(stepFor(checker)),
+        m_field(task.start, task.radius, checker, prices),
+        m_budget{prices.perMeter()},
+        m_left(task.poses) {}
 
-Length PoseSearch::ofWay(double length, bool forward) const {
-  return lengthDown(m_checker.motionCost().ofWay(length, forward != m_task.isReversed));
-}
+  void add(const Target& target) { m_targets.push_back(target); }
+  /** Tells the field what the rest of a way costs from a place on. */
+  void addRest(const GroundPose& pose, Length rest) { m_field.add(pose, rest); }
 
-Length PoseSearch::ofChange(const Node& from, const CurveState& to) const {
-  return from.before < 0 ? 0 : lengthDown(m_checker.motionCost().ofChange(from.state(), to));
-}
-
-Length PoseSearch::excess(Length cost) {
-  m_field.limit(cost);
-  return cost - std::min(cost, m_field.at(m_task.start));
-}
-
-std::optional<PoseSearch::Way> PoseSearch::run(Length most) {
-  m_most = most;
-  m_field.limit(most);
-  const Length rest = m_field.at(m_task.start);
-  if (rest == CostField::kUnreached) return std::nullopt;
-  m_good = static_cast<Length>(kGood * static_cast<double>(rest)) + lengthDown(kTurning);
-  reach({m_task.start, 0, -1, ReedsSheppCurve({}, 1, {})}, rest);
-  for (; !m_queue.empty() && m_left > 0; --m_left) {
-    const Entry entry = m_queue.top();
-    if (m_task.weight == 1 && entry.estimate >= m_most) break;
-    m_queue.pop();
-    Slices::count(30);
-    join(entry.node);
-    goOn(entry.node);
+  /** Nothing if no way costs less than `most`, or none was found. */
+  std::optional<Way> run(Length most) {
+    m_most = most;
+    const Length rest = m_field.at(m_task.start);
+    if (rest == CostField::kUnreached) return std::nullopt;
+    reach({m_task.start, 0, -1, ReedsSheppCurve({}, 1, {})}, rest);
+    for (; !m_queue.empty() && m_left > 0; --m_left) {
+      const Entry entry = m_queue.top();
+      if (m_task.weight == 1 && entry.estimate >= m_most) break;
+      m_queue.pop();
+      Slices::count(30);
+      join(entry.node);
+      goOn(entry.node);
+    }
+    if (!m_joint) return std::nullopt;
+    return Way{joined(), m_targets[m_joint->target].number};
   }
-  if (!m_joint) return std::nullopt;
-  return Way{joined(), m_targets[m_joint->target].number};
-}
 
-void PoseSearch::reach(const Node& node, Length rest) {
-  const auto weighted = static_cast<Length>(m_task.weight * static_cast<double>(rest));
-  m_queue.push({node.cost + weighted, static_cast<int>(m_nodes.size())});
-  m_nodes.push_back(node);
-}
+ private:
+  /** A pose that was reached. */
+  struct Node {
+    GroundPose pose;
+    Length cost;
+    int before;             ///< -1: it is the first
+    ReedsSheppCurve curve;  ///< from there
+    CurveState state() const { return endOf(curve); }
+  };
+  struct Entry {
+    Length estimate;
+    int node;
+    bool operator<(const Entry& o) const {  // the least on top
+      return estimate != o.estimate ? o.estimate < estimate : o.node < node;
+    }
+  };
+  /** The best way that is known. */
+  struct Joint {
+    int node;
+    ReedsSheppCurve curve;
+    std::size_t target;
+  };
 
-void PoseSearch::goOn(int from) {
-  for (const double turn : kTurns)
-    for (const bool forward : {true, false})
-      if (forward != m_task.isReversed || m_checker.motionCost().canReverse())
-        step(from, turn, forward);
-}
+  const Node& node(int i) const { return m_nodes[static_cast<std::size_t>(i)]; }
 
-void PoseSearch::step(int from, double turn, bool forward) {
-  const double tightest = m_checker.reedsShepp().turningRadius();
-  const double radius = turn == 0 ? tightest : tightest / std::abs(turn);
-  const int side = turn > 0 ? 1 : turn < 0 ? -1 : 0;
-  const ReedsSheppCurve curve(node(from).pose.pose, radius, {{{forward ? m_step : -m_step, side}}});
-  GroundPose to{curve.at(m_step).pose, node(from).pose.z};
-  const Length rest = m_field.at(to);
-  Length cost = node(from).cost + ofWay(m_step, forward) + ofChange(node(from), beginOf(curve));
-  if (rest == CostField::kUnreached || cost + rest >= m_most) return;
-  const std::uint64_t key = (bits(to.pose.x, m_step / 2, 24) << 32) |
-                            (bits(to.pose.y, m_step / 2, 24) << 8) |
-                            (bits(to.pose.phi + M_PI, 2 * M_PI / kHeadings, 7) << 1) | forward;
-  const auto [least, isNew] = m_least.try_emplace(key, CostField::kUnreached);
-  if (least->second <= cost) return;
-  const Surface* s = m_checker.ground().near(m_checker.ground().columnAt(to.pose.x, to.pose.y),
-                                             to.z, 2 * m_checker.ground().step());
-  if (!s) return;
-  to.z = s->z;
-  const auto whole = costOver(curve, node(from).pose.z, to.z, cost, rest);
-  if (!whole || *whole >= least->second) return;
-  least->second = *whole;
-  reach({to, *whole, from, curve}, rest);
-}
-
-std::optional<Length> PoseSearch::costOver(const ReedsSheppCurve& curve, int from, int to,
-                                           Length cost, Length rest) {
-  if (cost + rest >= m_most) return std::nullopt;
-  m_budget.left = colored_graph::toMeters(m_most - cost - rest);
-  const auto profile = m_checker.profile(curve, from, to, &m_budget);
-  if (!profile) return std::nullopt;
-  cost += m_prices.of(*profile);
-  return cost + rest < m_most ? std::optional(cost) : std::nullopt;
-}
-
-/** Each time others of the targets have their turn. */
-void PoseSearch::join(int from) {
-  for (std::size_t i = m_targets.size(); i-- > 0;) {
-    const Target& target = m_targets[i];
-    if (from > 0 && (static_cast<int>(i) + m_left) % m_task.shareOfTargets) continue;
-    const TPose2D &a = node(from).pose.pose, &b = target.pose.pose;
-    const double distance = std::hypot(b.x - a.x, b.y - a.y);
-    if (distance < m_task.reach && node(from).cost + lengthDown(distance) + target.rest < m_most)
-      join(from, target);
+  Length ofWay(double length, bool forward) const {
+    return lengthDown(m_checker.motionCost().ofWay(length, forward != m_task.isReversed));
   }
-}
 
-void PoseSearch::join(int from, const Target& target) {
-  const MotionCost& price = m_checker.motionCost();
-  for (const ReedsSheppCurve& curve : curves(node(from).pose, target.pose)) {
-    if (curve.length() > m_task.longestCurve) continue;
+  Length ofChange(const Node& from, const CurveState& to) const {
+    return from.before < 0 ? 0 : lengthDown(m_checker.motionCost().ofChange(from.state(), to));
+  }
+
+  void reach(const Node& node, Length rest) {
+    const auto weighted = static_cast<Length>(m_task.weight * static_cast<double>(rest));
+    m_queue.push({node.cost + weighted, static_cast<int>(m_nodes.size())});
+    m_nodes.push_back(node);
+  }
+
+  void goOn(int from) {
+    for (const double turn : kTurns)
+      for (const bool forward : {true, false})
+        if (forward != m_task.isReversed || m_checker.motionCost().canReverse())
+          step(from, turn, forward);
+  }
+
+  void step(int from, double turn, bool forward) {
+    const double tightest = m_checker.reedsShepp().turningRadius();
+    const double radius = turn == 0 ? tightest : tightest / std::abs(turn);
+    const int side = turn > 0 ? 1 : turn < 0 ? -1 : 0;
+    const ReedsSheppCurve curve(node(from).pose.pose, radius,
+                                {{{forward ? m_step : -m_step, side}}});
+    GroundPose to{curve.at(m_step).pose, node(from).pose.z};
+    const Length rest = m_field.at(to);
+    Length cost = node(from).cost + ofWay(m_step, forward) + ofChange(node(from), beginOf(curve));
+    if (rest == CostField::kUnreached || cost + rest >= m_most) return;
+    const std::uint64_t key = (bits(to.pose.x, m_step / 2, 24) << 32) |
+                              (bits(to.pose.y, m_step / 2, 24) << 8) |
+                              (bits(to.pose.phi + M_PI, 2 * M_PI / kHeadings, 7) << 1) | forward;
+    const auto [least, isNew] = m_least.try_emplace(key, CostField::kUnreached);
+    if (least->second <= cost) return;
+    const Surface* s = m_checker.ground().near(m_checker.ground().columnAt(to.pose.x, to.pose.y),
+                                               to.z, 2 * m_checker.ground().step());
+    if (!s) return;
+    to.z = s->z;
+    const auto whole = costOver(curve, node(from).pose.z, to.z, cost, rest);
+    if (!whole || *whole >= least->second) return;
+    least->second = *whole;
+    reach({to, *whole, from, curve}, rest);
+  }
+
+  std::optional<Length> costOver(const ReedsSheppCurve& curve, int from, int to, Length cost,
+                                 Length rest) {
+    if (cost + rest >= m_most) return std::nullopt;
+    m_budget.left = colored_graph::toMeters(m_most - cost - rest);
+    const auto profile = m_checker.profile(curve, from, to, &m_budget);
+    if (!profile) return std::nullopt;
+    cost += m_prices.of(*profile);
+    return cost + rest < m_most ? std::optional(cost) : std::nullopt;
+  }
+
+  /** Each time others of the targets have their turn. */
+  void join(int from) {
+    for (std::size_t i = m_targets.size(); i-- > 0;) {
+      const Target& target = m_targets[i];
+      if (from > 0 && (static_cast<int>(i) + m_left) % m_task.shareOfTargets) continue;
+      const TPose2D &a = node(from).pose.pose, &b = target.pose.pose;
+      const double distance = std::hypot(b.x - a.x, b.y - a.y);
+      if (distance < m_task.reach && node(from).cost + lengthDown(distance) + target.rest < m_most)
+        join(from, target);
+    }
+  }
+
+  void join(int from, const Target& target) {
+    const MotionCost& price = m_checker.motionCost();
+    const ReedsSheppCurve curve = curveBetween(node(from).pose, target.pose);
+    if (curve.length() > m_task.longestCurve) return;
     Length cost = node(from).cost + ofChange(node(from), beginOf(curve)) +
                   lengthDown(price.of(m_task.isReversed ? curve.reversed() : curve));
     if (target.state) cost += lengthDown(price.ofChange(endOf(curve), *target.state));
     const int z = node(from).pose.z;
-    if (cost + target.rest >= m_most || !mayFit(curve, m_checker.ground().centerOf(z), m_checker))
-      continue;
+    if (cost + target.rest >= m_most || !mayFit(curve, z)) return;
     const auto whole = costOver(curve, z, target.pose.z, cost, target.rest);
-    if (!whole) continue;
+    if (!whole) return;
     m_most = *whole + target.rest;
-    if (m_most <= m_good) m_left = std::min(m_left, m_task.posesAfter);
     m_joint = Joint{from, curve, static_cast<std::size_t>(&target - m_targets.data())};
   }
-}
 
-std::vector<ReedsSheppCurve> PoseSearch::curves(const GroundPose& from,
-                                                const GroundPose& to) const {
-  if (!m_task.isReversed) return m_checker.motionCost().curves(from.pose, to.pose);
-  std::vector<ReedsSheppCurve> curves = m_checker.motionCost().curves(to.pose, from.pose);
-  for (ReedsSheppCurve& curve : curves) curve = curve.reversed();
-  return curves;
-}
+  /** Few places tell most curves that do not fit, sooner than profiles do: near its end first, for
+   * goals are where there is little room. \param z key of the surface at its begin */
+  bool mayFit(const ReedsSheppCurve& curve, int z) const {
+    constexpr std::array<double, 4> kShares = {0.9, 0.5, 0.25, 0.75};
+    return std::all_of(kShares.begin(), kShares.end(), [&](double share) {
+      const auto placed =
+          m_checker.place(curve.at(share * curve.length()).pose, m_checker.ground().centerOf(z));
+      return placed && m_checker.fit(*placed) == Fit::Free;
+    });
+  }
 
-std::vector<PathPoint> PoseSearch::joined() const {
-  std::vector<int> way;
-  for (int i = m_joint->node; node(i).before >= 0; i = node(i).before) way.push_back(i);
-  std::vector<PathPoint> path;
-  for (auto i = way.rbegin(); i != way.rend(); ++i)
-    appendCurve(m_checker.trace(node(*i).curve, node(node(*i).before).pose.z), path);
-  appendCurve(m_checker.trace(m_joint->curve, node(m_joint->node).pose.z), path);
-  return path;
-}
+  ReedsSheppCurve curveBetween(const GroundPose& from, const GroundPose& to) const {
+    const MotionCost& price = m_checker.motionCost();
+    return m_task.isReversed ? price.shortest(to.pose, from.pose).reversed()
+                             : price.shortest(from.pose, to.pose);
+  }
 
-namespace {
+  std::vector<PathPoint> joined() const {
+    std::vector<int> way;
+    for (int i = m_joint->node; node(i).before >= 0; i = node(i).before) way.push_back(i);
+    std::vector<PathPoint> path;
+    for (auto i = way.rbegin(); i != way.rend(); ++i)
+      appendCurve(m_checker.trace(node(*i).curve, node(node(*i).before).pose.z), path);
+    appendCurve(m_checker.trace(m_joint->curve, node(m_joint->node).pose.z), path);
+    return path;
+  }
+
+  const Task m_task;
+  const CollisionChecker& m_checker;
+  const ClassPrices& m_prices;
+  const double m_step;
+  CostField m_field;
+  std::vector<Target> m_targets;
+  ClassBudget m_budget;
+  Length m_most = 0;
+  std::vector<Node> m_nodes;
+  std::unordered_map<std::uint64_t, Length> m_least;  ///< by what makes poses the same
+  std::priority_queue<Entry> m_queue;
+  std::optional<Joint> m_joint;
+  int m_left;
+};
 
 /** The path as if it were driven from its end to its begin. */
 std::vector<PathPoint> reversed(const std::vector<PathPoint>& path) {
@@ -283,13 +266,13 @@ std::vector<PathPoint> wayFromOneEnd(const GroundPose& start, const GroundPose& 
                                      bool isReversed, const CollisionChecker& checker,
                                      const ClassPrices& prices) {
   constexpr double kBeside = 20, kReach = 15, kWeight = 2.4;  // m, m
-  constexpr int kPoses = 2000, kPosesAfter = 300, kShare = 3;
+  constexpr int kPoses = 2000, kShare = 3;
   constexpr Length kMost = Length{1} << 62;
   const double turn = checker.reedsShepp().turningRadius(),
                distance = std::hypot(goal.pose.x - start.pose.x, goal.pose.y - start.pose.y);
   const auto [from, to] = isReversed ? std::tie(goal, start) : std::tie(start, goal);
   PoseSearch search({from, distance + kBeside, kReach + 2 * turn, kReach + 3 * turn + distance,
-                     kWeight, kPoses, kPosesAfter, kShare, isReversed},
+                     kWeight, kPoses, kShare, isReversed},
                     checker, prices);
   search.addRest(to, 0);
   search.add({to, std::nullopt, 0, 0});
@@ -307,11 +290,6 @@ std::vector<PathPoint> wayBetween(const GroundPose& start, const GroundPose& goa
 }
 
 namespace {
-
-/** To turn around costs as much anywhere: that is no reason to look for another way. */
-double costOfTurning(const CollisionChecker& checker) {
-  return M_PI * checker.reedsShepp().turningRadius() + checker.motionCost().gearChange();
-}
 
 GroundPose poseAt(const PathPoint& p, const Ground& ground) {
   return {{p.x, p.y, p.heading}, ground.keyOf(p.z)};
@@ -347,7 +325,7 @@ std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path,
   const Ground& ground = checker.ground();
   const double radius = std::max(kLeast, kInTurningRadii * checker.reedsShepp().turningRadius());
   PoseSearch search({poseAt(path.front(), ground), radius, kReach * radius, kLongestCurve * radius,
-                     1, kPoses, kPoses, kShare, isReversed},
+                     1, kPoses, kShare, isReversed},
                     checker, prices);
   const std::vector<Length> toGo = costsToGo(path, isReversed, checker, prices);
   double last = 0;
@@ -359,7 +337,6 @@ std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path,
     last = p.arcLength;
     search.add({poseAt(p, ground), stateAt(path[std::min(i + 1, path.size() - 1)]), toGo[i], i});
   }
-  if (search.excess(toGo.front()) <= lengthDown(costOfTurning(checker))) return std::nullopt;
   auto way = search.run(toGo.front() - lengthDown(kLeastGain));
   if (!way) return std::nullopt;
   const double more = way->path.back().arcLength - path[way->target].arcLength;

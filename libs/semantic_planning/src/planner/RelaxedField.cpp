@@ -15,42 +15,17 @@ namespace {
 
 using Cost = RelaxedField::Cost;
 
-/** A step to a neighboring column, and where discs and wheels are when it has been taken. */
-struct Step {
-  Column by;
-  Cost length;
-  std::vector<Column> discs, wheels;
-};
-
-Column rotated(double x, double y, double angle, double voxel) {
-  return {static_cast<int>(std::lround((std::cos(angle) * x - std::sin(angle) * y) / voxel)),
-          static_cast<int>(std::lround((std::sin(angle) * x + std::cos(angle) * y) / voxel))};
-}
-
-std::array<Step, 8> stepsOf(const CollisionChecker& checker) {
-  const double voxel = checker.ground().voxelSize();
-  std::array<Step, 8> steps;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const double angle = static_cast<double>(i) * M_PI / 4;
-    steps[i].by = rotated(1.2 * voxel, 0, angle, voxel);
-    steps[i].length = i % 2 ? kDiagonalStep : kStraightStep;
-    for (const auto& d : checker.discs())
-      steps[i].discs.push_back(rotated(d.disc.x, d.disc.y, angle, voxel));
-    for (const double y : checker.wheels()) steps[i].wheels.push_back(rotated(0, y, angle, voxel));
-  }
-  return steps;
-}
-
-Column operator+(Column a, Column b) { return {a.x + b.x, a.y + b.y}; }
-
 class RelaxedSearch {
  public:
   RelaxedSearch(const CollisionChecker& checker, bool overForbidden)
       : m_checker(checker),
         m_overForbidden(overForbidden),
-        m_field(checker.ground()),
-        m_steps(stepsOf(checker)),
-        m_weights(weightsOfRanks(checker.order())) {}
+        m_field(checker),
+        m_weights(weightsOfRanks(checker.order())) {
+    for (std::size_t step = 0; step < kSteps.size(); ++step)
+      for (const auto& d : checker.discs())
+        m_discs[step].push_back(m_field.turned(d.disc.x, d.disc.y, step));
+  }
 
   /** From one to the other, if there is a way. */
   void run(const GroundPose& start, const GroundPose& goal, RelaxedPath& guide) {
@@ -66,7 +41,7 @@ class RelaxedSearch {
       if (estimate != cost + bound(place.column)) continue;  // there was a better way to it
       noteNearest(place.column, guide);
       Slices::count(1);
-      for (const Step& step : m_steps) take(step, place, cost);
+      for (std::size_t step = 0; step < kSteps.size(); ++step) take(step, place, cost);
     }
   }
 
@@ -80,36 +55,26 @@ class RelaxedSearch {
   }
 
   /** \param before what it costs to be there */
-  void take(const Step& step, const Place& from, Cost before) {
+  void take(std::size_t step, const Place& from, Cost before) {
     const Place to =
-        m_field.placeNear(from.column + step.by, from.surface->z, m_checker.ground().step());
+        m_field.placeNear(from.column + kSteps[step], from.surface->z, m_checker.ground().step());
     if (!to.surface) return;
     const Label& known = m_field.label(to.cell);
-    if (before + step.length * m_weights.front() >= known.cost) return;
-    colored_graph::Rank rank = rankAt(step, to);
+    const Cost length = step % 2 ? kDiagonalStep : kStraightStep;
+    if (before + length * m_weights.front() >= known.cost) return;
+    colored_graph::Rank rank = m_field.rankAt(to, step);
     if (rank == colored_graph::kForbidden && m_overForbidden) rank = m_checker.order().ranks() - 1;
     if (rank == colored_graph::kForbidden) return;
-    const Cost cost = before + step.length * m_weights[static_cast<std::size_t>(rank)];
+    const Cost cost = before + length * m_weights[static_cast<std::size_t>(rank)];
     if (cost < known.cost && (to.cell == m_goal.cell || fits(step, to)))
       reach(to, {cost, from.cell});
   }
 
-  /** The worst under the wheels. */
-  colored_graph::Rank rankAt(const Step& step, const Place& at) const {
-    colored_graph::Rank worst = 0;
-    for (const Column& wheel : step.wheels) {
-      const Surface* below =
-          m_field.near(at.column + wheel, at.surface->z, 2 * m_checker.ground().step());
-      if (!below) return colored_graph::kForbidden;
-      worst = std::max(worst, m_checker.order().rank(below->classId));
-    }
-    return worst;
-  }
-
-  bool fits(const Step& step, const Place& at) const {
-    for (std::size_t i = 0; i < step.discs.size(); ++i) {
+  bool fits(std::size_t step, const Place& at) const {
+    for (std::size_t i = 0; i < m_discs[step].size(); ++i) {
       const auto& disc = m_checker.discs()[i];
-      const Surface* below = m_field.near(at.column + step.discs[i], at.surface->z, disc.tolerance);
+      const Surface* below =
+          m_field.near(at.column + m_discs[step][i], at.surface->z, disc.tolerance);
       if (!below || below->clearance2 < disc.needed2) return false;
     }
     return true;
@@ -151,14 +116,38 @@ class RelaxedSearch {
   const CollisionChecker& m_checker;
   const bool m_overForbidden;
   RelaxedField m_field;
-  const std::array<Step, 8> m_steps;
-  const std::vector<Cost> m_weights;  ///< of a length, by rank
+  std::array<std::vector<Column>, kSteps.size()> m_discs;  ///< by step
+  const std::vector<Cost> m_weights;                       ///< of a length, by rank
   MonotoneQueue<Cell> m_queue;
   Place m_goal;
   double m_nearest = 0;  ///< columns from the goal
 };
 
 }  // namespace
+
+RelaxedField::RelaxedField(const CollisionChecker& checker)
+    : m_checker(checker),
+      m_surfaces(checker.ground().layers().surfaces()),
+      m_labels(m_surfaces.size()) {
+  for (std::size_t step = 0; step < kSteps.size(); ++step)
+    for (const double y : checker.wheels()) m_wheels[step].push_back(turned(0, y, step));
+}
+
+Column RelaxedField::turned(double x, double y, std::size_t step) const {
+  const double angle = static_cast<double>(step) * M_PI / 4, voxel = m_checker.ground().voxelSize();
+  return {static_cast<int>(std::lround((std::cos(angle) * x - std::sin(angle) * y) / voxel)),
+          static_cast<int>(std::lround((std::sin(angle) * x + std::cos(angle) * y) / voxel))};
+}
+
+colored_graph::Rank RelaxedField::rankAt(const Place& at, std::size_t step) const {
+  colored_graph::Rank worst = 0;
+  for (const Column& wheel : m_wheels[step]) {
+    const Surface* below = near(at.column + wheel, at.surface->z, 2 * m_checker.ground().step());
+    if (!below) return colored_graph::kForbidden;
+    worst = std::max(worst, m_checker.order().rank(below->classId));
+  }
+  return worst;
+}
 
 std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order) {
   const ClassPrices prices(order);

@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_planning/ground/Ground.h>
+#include <semantic_planning/planner/Slices.h>
 #include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ClassPrices.h"
 #include "ground/GroundTiles.h"
 
 namespace semantic_planning {
@@ -74,8 +76,12 @@ class MonotoneQueue {
   Key m_last = 0;
 };
 
-/** Lengths of steps to neighbors on a grid, in fifths of its spacing. */
+/** Steps to neighbors on a grid, each turned by 45 degrees from the one before, and their lengths
+ * in fifths of its spacing. */
+constexpr std::array<Column, 8> kSteps = {
+    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 constexpr std::int64_t kStraightStep = 5, kDiagonalStep = 7;
+inline Column operator+(Column a, Column b) { return {a.x + b.x, a.y + b.y}; }
 
 /** Least length of steps between two columns. */
 inline std::int64_t stepsBetween(Column a, Column b) {
@@ -112,9 +118,8 @@ class RelaxedField {
     Cell cell;
   };
 
-  /** \param ground must outlive the field. */
-  explicit RelaxedField(const Ground& ground)
-      : m_surfaces(ground.layers().surfaces()), m_labels(m_surfaces.size()) {}
+  /** \param checker must outlive the field. */
+  explicit RelaxedField(const CollisionChecker& checker);
 
   /** The column's drivable surface nearest to a height, at most `tolerance` voxels off; or null. */
   const Surface* near(Column c, int z, int tolerance) const;
@@ -122,9 +127,16 @@ class RelaxedField {
   Place placeNear(Column c, int z, int tolerance) const;
   Place placeOf(const Cell& cell) const;
   Label& label(const Cell& cell);
+  /** Where a place of the vehicle (meters) is, seen from its column, if it heads along a step. */
+  Column turned(double x, double y, std::size_t step) const;
+  /** The worst rank under the wheels of a vehicle that heads along a step; forbidden, too, where a
+   * wheel is over no ground. */
+  colored_graph::Rank rankAt(const Place& at, std::size_t step) const;
 
  private:
+  const CollisionChecker& m_checker;
   const SurfaceGrid& m_surfaces;
+  std::array<std::vector<Column>, kSteps.size()> m_wheels;  ///< by step
   std::vector<std::unique_ptr<Label[]>> m_labels;  ///< by tile, of its surfaces; null: none reached
 };
 
@@ -160,6 +172,88 @@ inline RelaxedField::Label& RelaxedField::label(const Cell& cell) {
   if (!labels) labels = std::make_unique<Label[]>(m_surfaces.at(cell.tile)->surfaces.size());
   return labels[cell.index];
 }
+
+/** The least that the rest of a way may cost from the ground around a place on, for a vehicle that
+ * could turn on the spot and fits everywhere: classes under its wheels and length count. What
+ * nobody asks for is not found out. */
+class CostField {
+ public:
+  using Length = colored_graph::Length;
+  static constexpr Length kUnreached = RelaxedField::kUnreached;
+
+  /** \param radius meters; the field is a square */
+  CostField(const GroundPose& center, double radius, const CollisionChecker& checker,
+            const ClassPrices& prices)
+      : m_checker(checker),
+        m_prices(prices),
+        m_center(checker.ground().columnAt(center.pose.x, center.pose.y)),
+        m_reach(static_cast<int>(radius / checker.ground().voxelSize())),
+        m_field(checker) {}
+
+  /** A place from which the rest costs so much. */
+  void add(const GroundPose& pose, Length cost) {
+    if (const Place place = placeAt(pose); place.surface) reach(place, cost);
+  }
+
+  /** kUnreached: outside, or there is no way. */
+  Length at(const GroundPose& pose) {
+    const Place asked = placeAt(pose);
+    if (!asked.surface || !contains(asked.column)) return kUnreached;
+    const Length& known = m_field.label(asked.cell).cost;
+    while (!m_queue.empty() && m_queue.top().first < known) {
+      const auto [cost, cell] = m_queue.pop();
+      Slices::count(1);
+      if (cost == m_field.label(cell).cost) leave(m_field.placeOf(cell), cost);
+    }
+    return known;
+  }
+
+ private:
+  /** Share of a way along eight directions: ways between these are up to 8 % shorter. */
+  static constexpr double kShortest = 0.96;
+  using Place = RelaxedField::Place;
+
+  bool contains(Column c) const {
+    return std::max(std::abs(c.x - m_center.x), std::abs(c.y - m_center.y)) <= m_reach;
+  }
+
+  Place placeAt(const GroundPose& pose) const {
+    const Ground& ground = m_checker.ground();
+    return m_field.placeNear(ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 2 * ground.step());
+  }
+
+  void reach(const Place& place, Length cost) {
+    if (!contains(place.column)) return;
+    Length& known = m_field.label(place.cell).cost;
+    if (known <= cost) return;
+    known = cost;
+    m_queue.push(cost, place.cell);
+  }
+
+  /** To its neighbors, from each of which a step leads here: whether along the step or back, wheels
+   * are over the same columns. */
+  void leave(const Place& here, Length cost) {
+    const Ground& ground = m_checker.ground();
+    for (std::size_t step = 0; step < kSteps.size() / 2; ++step) {
+      const colored_graph::Rank rank = m_field.rankAt(here, step);
+      if (rank == colored_graph::kForbidden) continue;
+      const Length length =
+          colored_graph::lengthDown(kShortest * (step % 2 ? M_SQRT2 : 1) * ground.voxelSize());
+      for (const std::size_t back : {step, step + kSteps.size() / 2}) {
+        const Place from =
+            m_field.placeNear(here.column + kSteps[back], here.surface->z, ground.step());
+        if (from.surface) reach(from, cost + length + m_prices.ofRank(rank, length));
+      }
+    }
+  }
+
+  const CollisionChecker& m_checker;
+  const ClassPrices& m_prices;
+  const Column m_center;
+  const int m_reach;  ///< columns to each side of it
+  RelaxedField m_field;
+  MonotoneQueue<RelaxedField::Cell> m_queue;
+};
 
 /** The way of a vehicle that could turn on the spot. */
 struct RelaxedPath {

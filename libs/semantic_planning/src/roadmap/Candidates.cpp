@@ -12,7 +12,34 @@ namespace semantic_planning {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-PlanningRegion::PlanningRegion(const TPose2D& start, const TPose2D& goal, double buffer) {
+namespace {
+
+/** The lowest tile of the smallest rectangle that holds the ground, and the highest one. */
+std::pair<Column, Column> cornersOf(const Ground& ground) {
+  const std::vector<Column> tiles = ground.tiles();
+  Column low = tiles.front(), high = low;
+  for (const Column& tile : tiles) {
+    low = {std::min(low.x, tile.x), std::min(low.y, tile.y)};
+    high = {std::max(high.x, tile.x), std::max(high.y, tile.y)};
+  }
+  return {low, high};
+}
+
+}  // namespace
+
+PlanningRegion::PlanningRegion(const Ground& ground, const TPose2D& start, const TPose2D& goal,
+                               double buffer)
+    : m_isEverywhere(std::isinf(buffer)) {
+  if (m_isEverywhere) {
+    const auto [low, high] = cornersOf(ground);
+    const Column first = firstColumnOf(low);
+    const double half = ground.voxelSize() / 2, edge = kTileEdge * ground.voxelSize();
+    m_corner = {ground.centerOf(first.x) - half, ground.centerOf(first.y) - half};
+    m_along = {1, 0};
+    m_length = (high.x - low.x + 1) * edge;
+    m_width = (high.y - low.y + 1) * edge;
+    return;
+  }
   const double dx = goal.x - start.x, dy = goal.y - start.y, distance = std::hypot(dx, dy);
   m_along = distance > 0 ? TPoint2D(dx / distance, dy / distance) : TPoint2D(1, 0);
   m_length = distance + 2 * buffer;
@@ -24,19 +51,8 @@ PlanningRegion::PlanningRegion(const TPose2D& start, const TPose2D& goal, double
 bool PlanningRegion::contains(double x, double y, double margin) const {
   const double dx = x - m_corner.x, dy = y - m_corner.y;
   const double along = m_along.x * dx + m_along.y * dy, across = m_along.x * dy - m_along.y * dx;
-  const bool isWithin = std::isinf(m_length) || (along >= -margin && along <= m_length + margin &&
-                                                 across >= -margin && across <= m_width + margin);
-  return isWithin &&
-         (m_path.empty() || std::any_of(m_path.begin(), m_path.end(), [&](const TPoint2D& p) {
-            return std::hypot(p.x - x, p.y - y) <= m_distance + margin;
-          }));
-}
-
-PlanningRegion PlanningRegion::near(std::vector<TPoint2D> path, double distance) const {
-  PlanningRegion region = *this;
-  region.m_path = std::move(path);
-  region.m_distance = distance;
-  return region;
+  return m_isEverywhere || (along >= -margin && along <= m_length + margin && across >= -margin &&
+                            across <= m_width + margin);
 }
 
 TPoint2D PlanningRegion::at(double u, double v) const {
@@ -59,9 +75,6 @@ std::vector<Column> tilesIn(const PlanningRegion& region, const Ground& ground) 
 
 namespace {
 
-/** For each vertex asked for: draws in the region, and draws outside of it. */
-constexpr std::size_t kMostDraws = 1000, kMostSkips = 10000;
-
 /** Another sequence of the same evenness for every seed (Cranley, Patterson 1976). */
 std::array<double, 4> rotated(std::array<double, 4> draw, unsigned seed) {
   double shift = 0.618033988749895 * seed;
@@ -73,60 +86,15 @@ std::array<double, 4> rotated(std::array<double, 4> draw, unsigned seed) {
   return draw;
 }
 
-/** The rectangle of the tiles that hold ground. */
-class GroundRectangle {
- public:
-  explicit GroundRectangle(const Ground& ground) : m_voxelSize(ground.voxelSize()) {
-    const std::vector<Column> tiles = ground.tiles();
-    const auto [left, right] = std::minmax_element(tiles.begin(), tiles.end());
-    const auto [bottom, top] = std::minmax_element(
-        tiles.begin(), tiles.end(), [](const Column& l, const Column& r) { return l.y < r.y; });
-    const Column first = firstColumnOf({left->x, bottom->y});
-    m_low = {lowest(ground, first.x), lowest(ground, first.y)};
-    m_width = (right->x - left->x + 1) * kTileEdge * m_voxelSize;
-    m_height = (top->y - bottom->y + 1) * kTileEdge * m_voxelSize;
-  }
+}  // namespace
 
-  mrpt::math::TPoint2D at(double u, double v) const {
-    return {m_low.x + u * m_width, m_low.y + v * m_height};
-  }
-
- private:
-  double lowest(const Ground& ground, int key) const {
-    return ground.centerOf(key) - m_voxelSize / 2;
-  }
-
-  double m_voxelSize;
-  mrpt::math::TPoint2D m_low;
-  double m_width, m_height;
-};
-
-std::optional<GroundPose> candidateAt(const Ground& ground, const mrpt::math::TPoint2D& p,
-                                      double turn) {
+std::optional<GroundPose> haltonPose(unsigned draw, const PlanningRegion& region,
+                                     const Ground& ground, unsigned seed) {
+  const auto [u, v, turn, unused] = rotated(haltonPoint(draw), seed);
+  const TPoint2D p = region.at(u, v);
   const auto point = ground.find(p.x, p.y);
   if (!point) return std::nullopt;
   return GroundPose{{p.x, p.y, std::remainder(2 * M_PI * turn, 2 * M_PI)}, point->surface.z};
-}
-
-}  // namespace
-
-void drawHalton(const HaltonSearch& search,
-                const std::function<bool(const std::optional<GroundPose>&)>& enough) {
-  const bool overMap = !search.region.hasRectangle();
-  std::optional<GroundRectangle> rectangle;
-  if (overMap) rectangle.emplace(search.ground);
-  unsigned point = 0;
-  std::size_t left = kMostDraws * search.options.vertices;
-  for (std::size_t skips = kMostSkips * search.options.vertices; left > 0 && skips > 0;) {
-    const auto draw = rotated(haltonPoint(++point), search.options.seed);
-    const auto p = (overMap ? rectangle->at(draw[0], draw[1]) : search.region.at(draw[0], draw[1]));
-    if (overMap && !search.region.contains(p.x, p.y)) {
-      --skips;
-      continue;
-    }
-    --left;
-    if (enough(candidateAt(search.ground, p, draw[2]))) return;
-  }
 }
 
 using semantic_octree::Abstraction;

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -42,26 +41,22 @@ inline double unitHash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return (h ^ (h >> 16)) / 4294967296.0;
 }
 
-/** A rectangle along the line from start to goal, with a buffer on all sides, which may be
- * infinite; or what of it is near to a path. */
+/** A rectangle along the line from start to goal, with a buffer on all sides. */
 class PlanningRegion {
  public:
-  PlanningRegion(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal, double buffer);
-
-  /** What is no farther than a distance (meters) from a path. */
-  PlanningRegion near(std::vector<mrpt::math::TPoint2D> path, double distance) const;
+  /** \param buffer infinite: the region is everywhere, its rectangle that of the ground */
+  PlanningRegion(const Ground& ground, const mrpt::math::TPose2D& start,
+                 const mrpt::math::TPose2D& goal, double buffer);
 
   /** \param margin that a point may lie outside, meters */
   bool contains(double x, double y, double margin = 0) const;
-  bool hasRectangle() const { return !std::isinf(m_length); }
-  /** \param u, v in [0, 1], along the line and across; of the rectangle, if there is one. */
+  /** \param u, v in [0, 1], along the line and across */
   mrpt::math::TPoint2D at(double u, double v) const;
 
  private:
+  bool m_isEverywhere;
   mrpt::math::TPoint2D m_corner, m_along;  ///< m_along: unit vector of the line
   double m_length, m_width;
-  std::vector<mrpt::math::TPoint2D> m_path;  ///< empty: all of the rectangle
-  double m_distance = 0;
 };
 
 /** The ground's tiles that meet the region, and perhaps some near it. */
@@ -97,19 +92,10 @@ std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const Collisio
 constexpr double kHeadingReach = 5;
 inline bool hasAlignedHeadings(GraphKind kind) { return kind != GraphKind::Leaves; }
 
-/** Where a Halton sequence is laid. */
-struct HaltonSearch {
-  const Ground& ground;
-  const RoadmapOptions& options;
-  const PlanningRegion& region;
-};
-
-/** Draws from a Halton sequence over the region's rectangle, or the ground's if it has none, and
- * headings, in order, until `enough` answers true or the sequence has become hopeless (a thousand
- * draws in the region for each vertex asked for). Draws that are not over any ground are told as
- * nothing. */
-void drawHalton(const HaltonSearch& search,
-                const std::function<bool(const std::optional<GroundPose>&)>& enough);
+/** A draw, from 1 on, of a Halton sequence over a region and headings; nothing if it is not over
+ * any ground. */
+std::optional<GroundPose> haltonPose(unsigned draw, const PlanningRegion& region,
+                                     const Ground& ground, unsigned seed);
 
 /** A number in [0, 1) that spreads the cells of a grid: the fraction of cells below any bound is
  * the bound, in every neighborhood (ordered dithering, Bayer 1973). */
@@ -125,8 +111,6 @@ class CandidateStore {
    */
   CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
                  const RoadmapOptions& options);
-
-  const Ground& ground() const { return m_ground; }
 
   /** Least priority first. */
   const std::vector<CandidatePoint>& in(Column tile) { return made(tile).points; }

@@ -11,12 +11,12 @@ namespace semantic_planning {
 
 using colored_graph::kNoVertex;
 
-bool VertexPool::isUsable(const GroundPose& candidate) const {
+bool MapRoadmap::isUsable(const GroundPose& candidate) const {
   return m_checker.fit(candidate) == Fit::Free &&
          m_checker.order().rank(m_checker.classAt(candidate)) != colored_graph::kForbidden;
 }
 
-void VertexPool::add(const GroundPose& candidate, const std::optional<CandidatePoint>& point) {
+void MapRoadmap::add(const GroundPose& candidate, const std::optional<CandidatePoint>& point) {
   std::size_t index = m_members.size();
   if (m_free.empty()) {
     m_members.emplace_back();
@@ -29,12 +29,12 @@ void VertexPool::add(const GroundPose& candidate, const std::optional<CandidateP
   if (isUsable(candidate)) m_toInsert.push_back(index);
 }
 
-void VertexPool::dropVertex(Member& member) {
+void MapRoadmap::dropVertex(Member& member) {
   if (member.vertex != kNoVertex) m_toRemove.push_back(member.vertex);
   member.vertex = kNoVertex;
 }
 
-void VertexPool::remove(const CandidatePoint& point) {
+void MapRoadmap::remove(const CandidatePoint& point) {
   const auto found = m_ofPoint.find(point);
   if (found == m_ofPoint.end()) return;
   for (const std::size_t index : found->second) {
@@ -45,21 +45,8 @@ void VertexPool::remove(const CandidatePoint& point) {
   m_ofPoint.erase(found);
 }
 
-std::vector<CandidatePoint> VertexPool::turnedPoints(
-    const std::vector<Column>& tiles, double distance,
-    const std::function<double(const CandidatePoint&)>& headingOf) const {
-  const TileMarks changed(m_checker.ground(), tiles);
-  std::vector<CandidatePoint> turned;
-  for (const auto& [point, members] : m_ofPoint) {
-    const auto& pose = m_members[members.front()].candidate.pose;
-    if (changed.anyIn({pose.x, pose.y, distance}) && headingOf(point) != pose.phi)
-      turned.push_back(point);
-  }
-  return turned;
-}
-
 /** The ground may have gone up or down by what the wheels climb. */
-bool VertexPool::standsOnGround(Member& member) {
+bool MapRoadmap::standsOnGround(Member& member) {
   GroundPose& pose = member.candidate;
   const Ground& ground = m_checker.ground();
   const Column column = ground.columnAt(pose.pose.x, pose.pose.y);
@@ -70,7 +57,7 @@ bool VertexPool::standsOnGround(Member& member) {
   return true;
 }
 
-void VertexPool::look(std::size_t index) {
+void MapRoadmap::look(std::size_t index) {
   Member& member = m_members[index];
   if (!standsOnGround(member) || !isUsable(member.candidate)) return dropVertex(member);
   if (member.vertex == kNoVertex) {
@@ -82,15 +69,7 @@ void VertexPool::look(std::size_t index) {
   }
 }
 
-void VertexPool::refresh(const std::vector<Column>& changedTiles) {
-  const TileMarks changed(m_checker.ground(), changedTiles);
-  for (std::size_t i = 0; i < m_members.size(); ++i) {
-    const auto& pose = m_members[i].candidate.pose;
-    if (m_members[i].present && changed.anyIn({pose.x, pose.y, m_checker.reach()})) look(i);
-  }
-}
-
-void VertexPool::apply() {
+void MapRoadmap::apply() {
   std::vector<std::size_t> inserted;
   std::vector<GroundPose> poses;
   std::vector<ClassId> classes;
@@ -135,13 +114,12 @@ MapRoadmap::MapRoadmap(CandidateStore& store, const CollisionChecker& checker,
       m_options(withDefaults(options)),
       m_region(region),
       m_start(start),
-      m_roadmap(checker, m_options),
-      m_pool(checker, m_roadmap) {
+      m_roadmap(checker, m_options) {
   if (isFinite(m_options.kind))
     takeByPriority(store);
   else
     takeHalton();
-  m_pool.apply();
+  apply();
 }
 
 bool MapRoadmap::reachable(const GroundPose& pose) const {
@@ -160,8 +138,8 @@ std::size_t MapRoadmap::take(const CandidatePoint& point, std::size_t most) {
   for (const GroundPose& candidate : candidatesAt(point, m_checker, m_options)) {
     const auto& pose = candidate.pose;
     if (usable == most || !m_region.contains(pose.x, pose.y) || !reachable(candidate)) break;
-    m_pool.add(candidate, point);
-    usable += m_pool.isUsable(candidate);
+    add(candidate, point);
+    usable += isUsable(candidate);
   }
   return usable;
 }
@@ -186,39 +164,50 @@ void MapRoadmap::takeByPriority(CandidateStore& store) {
   if (!lists.empty()) m_lastPriority = lists.top().next->priority;
 }
 
-/** Points around which the ground changed so that they have other headings now. */
 std::vector<CandidatePoint> MapRoadmap::turnedPoints(const std::vector<Column>& tiles) const {
-  if (!hasAlignedHeadings(m_options.kind)) return {};
-  return m_pool.turnedPoints(tiles, kHeadingReach, [this](const CandidatePoint& point) {
-    return candidatesAt(point, m_checker, m_options).front().pose.phi;
-  });
+  std::vector<CandidatePoint> turned;
+  if (!hasAlignedHeadings(m_options.kind)) return turned;
+  const TileMarks changed(m_checker.ground(), tiles);
+  for (const auto& [point, members] : m_ofPoint) {
+    const auto& pose = m_members[members.front()].candidate.pose;
+    if (changed.anyIn({pose.x, pose.y, kHeadingReach}) &&
+        candidatesAt(point, m_checker, m_options).front().pose.phi != pose.phi)
+      turned.push_back(point);
+  }
+  return turned;
 }
 
+/** Until there are enough, or the sequence has become hopeless. */
 void MapRoadmap::takeHalton() {
-  std::size_t draws = 0, usable = 0;
-  drawHalton({m_checker.ground(), m_options, m_region},
-             [&](const std::optional<GroundPose>& candidate) {
-               ++draws;
-               if (candidate && reachable(*candidate)) {
-                 m_pool.add(*candidate);
-                 usable += m_pool.isUsable(*candidate);
-               }
-               const bool plain = m_options.kind == GraphKind::Halton;
-               return (plain ? draws : usable) == m_options.vertices;
-             });
+  constexpr std::size_t kMostDraws = 1000;  // for each vertex asked for
+  const bool isPlain = m_options.kind == GraphKind::Halton;
+  const std::size_t wanted = m_options.vertices;
+  std::size_t draws = 0;
+  for (std::size_t usable = 0;
+       (isPlain ? draws : usable) < wanted && draws < kMostDraws * wanted;) {
+    const auto candidate =
+        haltonPose(static_cast<unsigned>(++draws), m_region, m_checker.ground(), m_options.seed);
+    if (!candidate || !reachable(*candidate)) continue;
+    add(*candidate);
+    usable += isUsable(*candidate);
+  }
 }
 
 void MapRoadmap::update(const std::vector<Column>& changedTiles,
                         const CandidateStore::Change& points) {
-  for (const CandidatePoint& point : points.removed) m_pool.remove(point);
+  for (const CandidatePoint& point : points.removed) remove(point);
   for (const CandidatePoint& point : points.added)
     if (point.priority < m_lastPriority) take(point, kUnlimited);
   for (const CandidatePoint& point : turnedPoints(changedTiles)) {
-    m_pool.remove(point);
+    remove(point);
     take(point, kUnlimited);
   }
-  m_pool.refresh(changedTiles);
-  m_pool.apply();
+  const TileMarks changed(m_checker.ground(), changedTiles);
+  for (std::size_t i = 0; i < m_members.size(); ++i) {
+    const auto& pose = m_members[i].candidate.pose;
+    if (m_members[i].present && changed.anyIn({pose.x, pose.y, m_checker.reach()})) look(i);
+  }
+  apply();
   m_roadmap.refresh(changedTiles);
 }
 

@@ -183,14 +183,6 @@ bool NearestPoses::linked(VertexId a, VertexId b) const {
   return contains(a) && contains(b) && (holds(of(a), b) || holds(of(b), a));
 }
 
-std::optional<double> NearestPoses::distance(VertexId a, VertexId b) const {
-  for (const auto& [of, other] : {std::pair(a, b), std::pair(b, a)})
-    if (contains(of))
-      for (const Neighbor& n : m_entries[of].nearest)
-        if (n.id == other) return n.distance;
-  return std::nullopt;
-}
-
 std::vector<NearestPoses::Neighbor> NearestPoses::nearestTo(const GroundPose& pose,
                                                             std::size_t count) const {
   std::vector<std::pair<double, VertexId>> bounds;

@@ -2,7 +2,6 @@
 #include <colored_graph/ColoredGraph.h>
 #include <semantic_planning/roadmap/PosePair.h>
 
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -39,8 +38,6 @@ class NearestPoses {
   const std::vector<Neighbor>& of(VertexId v) const { return m_entries[v].nearest; }
   /** Whether one of them is among the other's nearest. */
   bool linked(VertexId a, VertexId b) const;
-  /** Between two that are linked, meters. */
-  std::optional<double> distance(VertexId a, VertexId b) const;
   /** The `count` nearest to a pose that need not be among these. */
   std::vector<Neighbor> nearestTo(const GroundPose& pose, std::size_t count) const;
 

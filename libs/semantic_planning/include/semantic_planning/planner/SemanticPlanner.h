@@ -64,8 +64,8 @@ class SemanticPlanner {
   /** \param map must outlive the planner. With a roadmap of the tree (isOfTree) it has to keep
    * G-values (setAbstraction()). \param order over the map's class ids, 0 = unknown
    * ground (loadClassOrder) \param corridor where ground is looked at, of a map that does not
-   * change (findCorridor()); vertices lie within RoadmapOptions::buffer from its way. Without: all
-   * ground. \throw std::invalid_argument bad options, or an order of other classes
+   * change (findCorridor()); vertices lie anywhere in it. Without: all ground.
+   * \throw std::invalid_argument bad options, or an order of other classes
    * \throw std::logic_error the map keeps no G-values and the roadmap needs them. */
   SemanticPlanner(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
                   const PlannerOptions& options = {}, const std::optional<Corridor>& corridor = {});

@@ -5,8 +5,6 @@
 
 namespace semantic_planning {
 
-struct WordSegment;
-
 /** A place on a curve. */
 struct CurvePoint {
   mrpt::math::TPose2D pose;  ///< meters, radians
@@ -63,8 +61,9 @@ class ReedsShepp {
 
  private:
   mrpt::math::TPose2D scaled(const mrpt::math::TPose2D& pose) const;
+  /** \param word of a car whose turning radius is 1 */
   ReedsSheppCurve curveOf(const mrpt::math::TPose2D& from,
-                          const std::array<WordSegment, 5>& word) const;
+                          std::array<ReedsSheppCurve::Segment, 5> word) const;
 
   double m_radius;
 };
