@@ -82,10 +82,7 @@ class GroundTiles {
   /** \param refilled gets the tiles that fills cross which came or went */
   void findFills(Column tile, std::vector<Column>& refilled);
   ColumnBox fill(Column tile);
-  ColumnBox markSlopes(Column tile);
   ColumnBox findObstacles(Column tile);
-  ColumnBox measureClearance(Column tile);
-  ColumnBox connect(Column tile);
 
   const semantic_octree::SemanticOcTree& m_map;
   const GroundShape m_shape;

@@ -17,8 +17,6 @@
 
 namespace semantic_planning {
 
-using colored_graph::EdgeProfile;
-using colored_graph::kNoVertex;
 using colored_graph::PathResult;
 
 namespace {
@@ -153,17 +151,15 @@ bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& resu
   return true;
 }
 
-std::optional<EdgeProfile> PlannerCore::evaluateTimed(const Roadmap& map, colored_graph::EdgeId e) {
-  const auto begin = std::chrono::steady_clock::now();
-  auto profile = map.evaluate(e);
-  m_evaluating += StageClock::millisecondsSince(begin);
-  return profile;
-}
-
 colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
   colored_graph::SearchOptions search;
   search.lengthBound = [&map](VertexId a, VertexId b) { return map.lengthBound(a, b); };
-  search.evaluate = [this, &map](colored_graph::EdgeId e) { return evaluateTimed(map, e); };
+  search.evaluate = [this, &map](colored_graph::EdgeId e) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto profile = map.evaluate(e);
+    m_evaluating += StageClock::millisecondsSince(begin);
+    return profile;
+  };
   search.cancelled = m_options.cancelled;
   return search;
 }
@@ -202,10 +198,6 @@ void PlannerCore::standAt(const Place& start) {
   assume(groundBelow(m_ground, m_options.vehicle, order(), start.pose, start.z));
 }
 
-PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
-  return m_search->search(map.graph(), start, goal, m_model, searchOptions(map));
-}
-
 void PlannerCore::makeRoadmap() {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   m_search->forget();
@@ -228,7 +220,7 @@ PlanResult PlannerCore::searchRoadmap(StageClock& clock) {
   clock.end("roadmap");
   m_evaluating = 0;
   const PathResult path =
-      isNew ? search(map, m_start, m_goal)
+      isNew ? m_search->search(map.graph(), m_start, m_goal, m_model, searchOptions(map))
             : m_search->replan(map.graph(), m_start, m_goal, m_model, searchOptions(map));
   clock.end("search", "evaluateEdges", m_evaluating);
   PlanResult result;
