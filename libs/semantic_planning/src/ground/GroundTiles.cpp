@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "ColumnGrid.h"
@@ -144,7 +145,9 @@ void GroundTiles::read(const std::vector<Column>& tiles) {
 
 std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
   if (tiles.empty()) return {};
-  const std::vector<Column> unknownBefore = forgotten(tiles);
+  std::vector<Column> unknownBefore;
+  std::copy_if(tiles.begin(), tiles.end(), std::back_inserter(unknownBefore),
+               [this](const Column& tile) { return !m_columns.find(tile); });
   recallStages(tiles);
   std::vector<Column> changed = finished(updateSurfaces(
       tiles, tilesWithin(boxesOf(unknownBefore), kReachOfClasses + 2 * reachOfGapFills(m_shape))));
@@ -197,13 +200,6 @@ void GroundTiles::forgetStages() {
   m_measured = {};
   m_fills = {};
   m_numRead = 0;
-}
-
-std::vector<Column> GroundTiles::forgotten(const std::vector<Column>& tiles) const {
-  std::vector<Column> missing;
-  for (const Column& tile : tiles)
-    if (!m_columns.find(tile)) missing.push_back(tile);
-  return missing;
 }
 
 void GroundTiles::recallStages(const std::vector<Column>& tiles) {

@@ -61,8 +61,6 @@ class GroundTiles {
   void forgetStages();
   /** Makes them again, before an update, where it needs them. */
   void recallStages(const std::vector<Column>& tiles);
-  /** \return which of these tiles are not in memory */
-  std::vector<Column> forgotten(const std::vector<Column>& tiles) const;
   /** Where surfaces are, and which of them are drivable. \param refilled tiles that are filled
    * again in any case */
   std::vector<ColumnBox> updateSurfaces(const std::vector<Column>& tiles,

@@ -29,13 +29,6 @@ PlannerOptions validated(const PlannerOptions& options,
   return options;
 }
 
-/** Tiles that a corridor's ground is limited to. */
-std::optional<std::vector<Column>> tilesOf(const std::optional<Corridor>& corridor,
-                                           double voxelSize) {
-  if (!corridor) return std::nullopt;
-  return corridor->tiles(voxelSize);
-}
-
 /** A start's trouble as the goal's. */
 PlanStatus atGoal(PlanStatus start) {
   return start == PlanStatus::StartOffGround ? PlanStatus::GoalOffGround
@@ -85,7 +78,8 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
     : m_follower(map.follow()),
       m_options(validated(options, map)),
       m_isInCorridor(corridor),
-      m_ground(map, options.vehicle, options.ground, order, tilesOf(corridor, map.getResolution())),
+      m_ground(map, options.vehicle, options.ground, order,
+               corridor ? std::optional(corridor->tiles(map.getResolution())) : std::nullopt),
       m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order,
                 options.reading),
       m_prices(m_checker.order()),
