@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "Recovery.h"
@@ -26,9 +25,8 @@ constexpr double kRestMargin = 0.1;      // m more than coming to rest takes
 constexpr double kShortestShunt = 0.15;  // m; shorter last stretches are not worth a change of gear
 constexpr double kBlind = 2;             // m; sensors may not see the ground nearer than this
 constexpr double kNearestWithin = 5;     // m around a goal that does not fit
-// Searches do so much of their work in a call, as SemanticPlanner::goOn() counts it. A vehicle that
-// leaves a place that it is moving from cannot wait.
-constexpr std::size_t kWork = 60000, kAllWork = std::numeric_limits<std::size_t>::max();
+// Searches do so much of their work in a call, as SemanticPlanner::goOn() counts it.
+constexpr std::size_t kWork = 60000;
 
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
@@ -252,7 +250,6 @@ bool DriveGuide::toGoal(From from, const Situation& now) {
                     m_open->from.z);
     m_planned = m_planner.hasPlanned();
   }
-  if (!mayWait(now)) m_work = kAllWork;
   std::optional<PlanResult> plan = m_planner.goOn(m_work);
   if (!plan) return false;
   m_found.reset();
@@ -275,7 +272,6 @@ bool DriveGuide::toFrontier(const SeekFrontier& question, const Situation& now) 
     m_explorer.begin(m_open->from.pose, m_open->from.z, m_aim);
   }
   const auto joinedTo = [&](DrivePath path) { return joined(m_open->from, now, std::move(path)); };
-  if (!mayWait(now)) m_work = kAllWork;
   const bool isChosen = m_explorer.goOn(joinedTo, m_work);
   const Exploration& places = m_explorer.found();
   m_planned = m_planned && places.frontiers.empty();
@@ -288,11 +284,6 @@ bool DriveGuide::toFrontier(const SeekFrontier& question, const Situation& now) 
   m_plan = std::move(way->plan);
   m_found = std::move(way->path);
   return true;
-}
-
-/** Where it stands, or on a path that it may follow meanwhile. */
-bool DriveGuide::mayWait(const Situation& now) const {
-  return m_open->from.isAhead || std::abs(now.state.speed) < DriveOptions::kAtRest;
 }
 
 std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) {

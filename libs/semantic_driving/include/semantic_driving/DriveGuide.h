@@ -107,7 +107,6 @@ class DriveGuide {
   bool isBetter(const Situation& now) const;
   bool toGoal(From from, const Situation& now);
   bool toFrontier(const SeekFrontier& question, const Situation& now);
-  bool mayWait(const Situation& now) const;
   std::optional<DrivePath> recovery(const Situation& now, bool blind);
   std::optional<DrivePath> back(const Situation& now) const;
   bool aimsElsewhere(const Situation& now);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "ColumnGrid.h"
@@ -10,36 +11,18 @@
 namespace semantic_planning {
 namespace {
 
-class SlopeMeter {
- public:
-  SlopeMeter(const SurfaceGrid& surfaces, Column tile, const GroundShape& shape)
-      : m_surfaces(surfaces, tile, shape.baseline),
-        m_shape(shape),
-        m_tolerance(shape.step * shape.baseline) {}
-
-  bool isDrivable(Column c, const Surface& s) const {
-    const double x = riseAlong(c, s, {m_shape.baseline, 0});
-    const double y = riseAlong(c, s, {0, m_shape.baseline});
-    const double rise = x == 0 ? y : y == 0 ? x : std::hypot(x, y);
-    return rise <= m_shape.rise;
-  }
-
- private:
-  /** Rise along an axis, voxels per voxel, between the surfaces at both ends of the baseline; less
-   * the one voxel that rounding of heights can make. */
-  double riseAlong(Column c, const Surface& s, Column half) const {
-    const Surface* before = surfaceNear(m_surfaces, {c.x - half.x, c.y - half.y}, s.z, m_tolerance);
-    const Surface* after = surfaceNear(m_surfaces, {c.x + half.x, c.y + half.y}, s.z, m_tolerance);
-    const int columns = m_shape.baseline * ((before ? 1 : 0) + (after ? 1 : 0));
-    if (columns == 0) return 0;
-    const int rise = int(after ? after->z : s.z) - int(before ? before->z : s.z);
-    return std::max(0, std::abs(rise) - 1) / double(columns);
-  }
-
-  const SurfaceWindow m_surfaces;
-  const GroundShape& m_shape;
-  const int m_tolerance;
-};
+/** Rise along an axis, voxels per voxel, between the surfaces at both ends of the baseline; less
+ * the one voxel that rounding of heights can make. */
+double riseAlong(const SurfaceWindow& surfaces, Column c, const Surface& s, Column half,
+                 const GroundShape& shape) {
+  const int tolerance = shape.step * shape.baseline;
+  const Surface* before = surfaceNear(surfaces, {c.x - half.x, c.y - half.y}, s.z, tolerance);
+  const Surface* after = surfaceNear(surfaces, {c.x + half.x, c.y + half.y}, s.z, tolerance);
+  const int columns = shape.baseline * ((before ? 1 : 0) + (after ? 1 : 0));
+  if (columns == 0) return 0;
+  const int rise = int(after ? after->z : s.z) - int(before ? before->z : s.z);
+  return std::max(0, std::abs(rise) - 1) / double(columns);
+}
 
 /** Marks the surfaces of a tile that are not too steep as drivable.
  * \param marked the tile, in `surfaces` \return the columns whose marks changed. */
@@ -47,10 +30,12 @@ ColumnBox markDrivable(const SurfaceGrid& surfaces, Column tile, SurfaceTile& ma
                        const GroundShape& shape) {
   ColumnBox changed;
   if (marked.surfaces.empty()) return changed;
-  const SlopeMeter meter(surfaces, tile, shape);
+  const SurfaceWindow window(surfaces, tile, shape.baseline);
   forSurfacesOf(tile, marked, [&](Column c, std::size_t i) {
     Surface& s = marked.surfaces[i];
-    const bool drivable = meter.isDrivable(c, s);
+    const double x = riseAlong(window, c, s, {shape.baseline, 0}, shape);
+    const double y = riseAlong(window, c, s, {0, shape.baseline}, shape);
+    const bool drivable = (x == 0 ? y : y == 0 ? x : std::hypot(x, y)) <= shape.rise;
     if (s.drivable != drivable) changed.add(c);
     s.drivable = drivable;
   });
@@ -66,14 +51,14 @@ std::vector<ColumnBox> changedBy(const std::vector<Column>& tiles, Stage stage) 
   return changed;
 }
 
-/** The columns of a tile for which f(index) is true. */
-template <class F>
-ColumnBox columnsWhere(Column tile, F f) {
-  ColumnBox box;
-  forColumnsOf(tile, [&](Column c) {
-    if (f(indexInTile(c))) box.add(c);
+/** What a stage changed in the surfaces of some tiles: stage(tile, its surfaces). */
+template <class Stage>
+std::vector<ColumnBox> changedBy(SurfaceGrid& surfaces, const std::vector<Column>& tiles,
+                                 Stage stage) {
+  return changedBy(tiles, [&](Column tile) {
+    SurfaceTile* found = surfaces.find(tile);
+    return found ? stage(tile, *found) : ColumnBox();
   });
-  return box;
 }
 
 /** The tile of a grid, which is set only if there is anything to be in it. */
@@ -81,8 +66,10 @@ template <class T>
 ColumnBox replace(ColumnGrid<T>& grid, Column tile, T value) {
   static const T none{};
   const T* before = grid.find(tile);
-  const ColumnBox changed =
-      columnsWhere(tile, [&](int i) { return !value.sameColumn(i, before ? *before : none); });
+  ColumnBox changed;
+  forColumnsOf(tile, [&](Column c) {
+    if (!value.sameColumn(indexInTile(c), before ? *before : none)) changed.add(c);
+  });
   if (!changed.empty()) grid.at(tile) = std::move(value);
   return changed;
 }
@@ -158,7 +145,9 @@ void GroundTiles::read(const std::vector<Column>& tiles) {
 
 std::vector<Column> GroundTiles::update(const std::vector<Column>& tiles) {
   if (tiles.empty()) return {};
-  const std::vector<Column> unknownBefore = forgotten(tiles);
+  std::vector<Column> unknownBefore;
+  std::copy_if(tiles.begin(), tiles.end(), std::back_inserter(unknownBefore),
+               [this](const Column& tile) { return !m_columns.find(tile); });
   recallStages(tiles);
   std::vector<Column> changed = finished(updateSurfaces(
       tiles, tilesWithin(boxesOf(unknownBefore), kReachOfClasses + 2 * reachOfGapFills(m_shape))));
@@ -211,13 +200,6 @@ void GroundTiles::forgetStages() {
   m_measured = {};
   m_fills = {};
   m_numRead = 0;
-}
-
-std::vector<Column> GroundTiles::forgotten(const std::vector<Column>& tiles) const {
-  std::vector<Column> missing;
-  for (const Column& tile : tiles)
-    if (!m_columns.find(tile)) missing.push_back(tile);
-  return missing;
 }
 
 void GroundTiles::recallStages(const std::vector<Column>& tiles) {
@@ -278,7 +260,9 @@ std::vector<ColumnBox> GroundTiles::updateSurfaces(std::vector<ColumnBox> scanne
   sortOut(refilled);
   auto changed = changedBy(refilled, [&](Column t) { return fill(t); });
   const auto sloped = tilesWithin(changed, m_shape.baseline);
-  append(changed, changedBy(sloped, [&](Column t) { return markSlopes(t); }));
+  append(changed, changedBy(m_surfaces, sloped, [&](Column tile, SurfaceTile& surfaces) {
+           return markDrivable(m_surfaces, tile, surfaces, m_shape);
+         }));
   return changed;
 }
 
@@ -289,8 +273,12 @@ std::vector<ColumnBox> GroundTiles::updateClearance(const std::vector<ColumnBox>
   std::vector<Column> measured = tilesWithin(obstacles, m_shape.largestClearance);
   measured.insert(measured.end(), tiles.begin(), tiles.end());
   sortOut(measured);
-  auto finished = changedBy(measured, [&](Column t) { return measureClearance(t); });
-  append(finished, changedBy(tiles, [&](Column t) { return connect(t); }));
+  auto finished = changedBy(m_surfaces, measured, [&](Column tile, SurfaceTile& surfaces) {
+    return m_clearanceMeter.measure(m_obstacles, tile, surfaces);
+  });
+  append(finished, changedBy(m_surfaces, tiles, [&](Column tile, SurfaceTile& surfaces) {
+           return markComponents(tile, surfaces, m_shape);
+         }));
   return finished;
 }
 
@@ -331,23 +319,8 @@ ColumnBox GroundTiles::fill(Column tile) {
   return replace(m_surfaces, tile, std::move(filled));
 }
 
-ColumnBox GroundTiles::markSlopes(Column tile) {
-  SurfaceTile* marked = m_surfaces.find(tile);
-  return marked ? markDrivable(m_surfaces, tile, *marked, m_shape) : ColumnBox();
-}
-
 ColumnBox GroundTiles::findObstacles(Column tile) {
   return replace(m_obstacles, tile, obstaclesIn(m_surfaces, tile, m_shape));
-}
-
-ColumnBox GroundTiles::measureClearance(Column tile) {
-  SurfaceTile* measured = m_surfaces.find(tile);
-  return measured ? m_clearanceMeter.measure(m_obstacles, tile, *measured) : ColumnBox();
-}
-
-ColumnBox GroundTiles::connect(Column tile) {
-  SurfaceTile* connected = m_surfaces.find(tile);
-  return connected ? markComponents(tile, *connected, m_shape) : ColumnBox();
 }
 
 std::optional<ClearanceMeter::Obstacle> GroundTiles::obstacleNear(Column c, int z) const {

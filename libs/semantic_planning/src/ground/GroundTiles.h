@@ -61,8 +61,6 @@ class GroundTiles {
   void forgetStages();
   /** Makes them again, before an update, where it needs them. */
   void recallStages(const std::vector<Column>& tiles);
-  /** \return which of these tiles are not in memory */
-  std::vector<Column> forgotten(const std::vector<Column>& tiles) const;
   /** Where surfaces are, and which of them are drivable. \param refilled tiles that are filled
    * again in any case */
   std::vector<ColumnBox> updateSurfaces(const std::vector<Column>& tiles,
@@ -82,10 +80,7 @@ class GroundTiles {
   /** \param refilled gets the tiles that fills cross which came or went */
   void findFills(Column tile, std::vector<Column>& refilled);
   ColumnBox fill(Column tile);
-  ColumnBox markSlopes(Column tile);
   ColumnBox findObstacles(Column tile);
-  ColumnBox measureClearance(Column tile);
-  ColumnBox connect(Column tile);
 
   const semantic_octree::SemanticOcTree& m_map;
   const GroundShape m_shape;

@@ -101,48 +101,26 @@ std::size_t GroundComponents::componentOf(Column c, const Surface& s) const {
   return m_parent[*m_firstOfTile.find(tileOf(c)) + s.component];
 }
 
-namespace {
-
-class ObstacleSearch {
- public:
-  ObstacleSearch(const SurfaceGrid& surfaces, Column tile, const GroundShape& shape)
-      : m_surfaces(surfaces, tile, 1), m_shape(shape) {}
-
-  ObstacleTile in(Column tile) {
-    ObstacleTile found;
-    forColumnsOf(tile, [&](Column c) {
-      const auto begin = static_cast<std::ptrdiff_t>(found.heights.size());
-      addOf(c, found.heights);
-      std::sort(found.heights.begin() + begin, found.heights.end());
-      found.heights.erase(std::unique(found.heights.begin() + begin, found.heights.end()),
-                          found.heights.end());
-      found.first[indexInTile(c) + 1] = static_cast<std::uint16_t>(found.heights.size());
-    });
-    found.heights.shrink_to_fit();
-    return found;
-  }
-
- private:
-  bool isFree(const Surface& s) const { return s.drivable && !m_shape.keepOff[s.classId]; }
-
-  void addOf(Column c, std::vector<std::uint16_t>& heights) const {
-    const SurfaceRange own = surfacesAt(m_surfaces, c);
+ObstacleTile obstaclesIn(const SurfaceGrid& surfaces, Column tile, const GroundShape& shape) {
+  const SurfaceWindow window(surfaces, tile, 1);
+  const auto isFree = [&](const Surface& s) { return s.drivable && !shape.keepOff[s.classId]; };
+  ObstacleTile found;
+  std::vector<std::uint16_t>& heights = found.all;
+  forColumnsOf(tile, [&](Column c) {
+    const auto begin = static_cast<std::ptrdiff_t>(heights.size());
+    const SurfaceRange own = surfacesAt(window, c);
     for (const Surface& s : own)
       if (!isFree(s)) heights.push_back(s.z);
     for (int y = c.y - 1; y <= c.y + 1; ++y)
       for (int x = c.x - 1; x <= c.x + 1; ++x)
-        for (const Surface& s : surfacesAt(m_surfaces, {x, y}))
-          if (!surfaceNear(own, s.z, m_shape.step) && isFree(s)) heights.push_back(s.z);
-  }
-
-  const SurfaceWindow m_surfaces;
-  const GroundShape& m_shape;
-};
-
-}  // namespace
-
-ObstacleTile obstaclesIn(const SurfaceGrid& surfaces, Column tile, const GroundShape& shape) {
-  return ObstacleSearch(surfaces, tile, shape).in(tile);
+        for (const Surface& s : surfacesAt(window, {x, y}))
+          if (!surfaceNear(own, s.z, shape.step) && isFree(s)) heights.push_back(s.z);
+    std::sort(heights.begin() + begin, heights.end());
+    heights.erase(std::unique(heights.begin() + begin, heights.end()), heights.end());
+    found.first[indexInTile(c) + 1] = static_cast<std::uint16_t>(heights.size());
+  });
+  heights.shrink_to_fit();
+  return found;
 }
 
 namespace {
@@ -155,52 +133,40 @@ int levelTolerance(int columns, const GroundShape& shape) {
   return std::min(shape.height, 2 * shape.step + 1 + static_cast<int>(shape.rise * columns));
 }
 
+/** For a row of columns of a tile the distance to the nearest one in the row with any obstacle, at
+ * most `farthest`. \param low the row's first column */
+std::array<int, kTileEdge> distancesInRow(const TileWindow<ObstacleTile>& obstacles, Column low,
+                                          int farthest) {
+  std::array<int, kTileEdge> distances;
+  distances.fill(farthest);
+  for (int x = -farthest; x < kTileEdge + farthest; ++x) {
+    const Column c{low.x + x, low.y};
+    const ObstacleTile& tile = obstacles.around(c);
+    if (tile.begin(indexInTile(c)) == tile.end(indexInTile(c))) continue;
+    const int end = std::min(kTileEdge, x + farthest + 1);
+    for (int to = std::max(0, x - farthest); to < end; ++to)
+      distances[to] = std::min(distances[to], between(x, to));
+  }
+  return distances;
+}
+
 /** For each column of a tile the squared distance to the nearest column with any obstacle, however
  * high; at most farthest squared. First within rows, then across them. */
-class FlatDistances {
- public:
-  FlatDistances(const TileWindow<ObstacleTile>& obstacles, Column tile, int farthest)
-      : m_farthest(farthest), m_inRow((kTileEdge + 2 * farthest) * kTileEdge, farthest) {
-    const Column low = firstColumnOf(tile);
-    for (int row = 0; row < kTileEdge + 2 * farthest; ++row)
-      measureRow(obstacles, {low.x, low.y - farthest + row}, &m_inRow[row * kTileEdge]);
-    if (m_any) measureAcross();
-  }
-
-  bool any() const { return m_any; }
-  int operator[](int column) const { return m_squared[column]; }
-
- private:
-  /** Each obstacle of the row lowers what is near it. \param low the row's first column in the tile
-   */
-  void measureRow(const TileWindow<ObstacleTile>& obstacles, Column low, int* row) {
-    for (int x = -m_farthest; x < kTileEdge + m_farthest; ++x) {
-      const Column c{low.x + x, low.y};
-      if (!obstacles.around(c).any(indexInTile(c))) continue;
-      m_any = true;
-      const int end = std::min(kTileEdge, x + m_farthest + 1);
-      for (int to = std::max(0, x - m_farthest); to < end; ++to)
-        row[to] = std::min(row[to], between(x, to));
+std::array<int, kTileColumns> flatDistances(const TileWindow<ObstacleTile>& obstacles, Column tile,
+                                            int farthest) {
+  const Column low = firstColumnOf(tile);
+  std::array<int, kTileColumns> squared;
+  squared.fill(farthest * farthest);
+  for (int row = -farthest; row < kTileEdge + farthest; ++row) {
+    const auto inRow = distancesInRow(obstacles, {low.x, low.y + row}, farthest);
+    for (int y = std::max(0, row - farthest); y <= std::min(kTileEdge - 1, row + farthest); ++y) {
+      const int dy = between(row, y);
+      int* at = &squared[y * kTileEdge];
+      for (int x = 0; x < kTileEdge; ++x) at[x] = std::min(at[x], dy * dy + inRow[x] * inRow[x]);
     }
   }
-
-  void measureAcross() {
-    m_squared.fill(m_farthest * m_farthest);
-    for (int y = 0; y < kTileEdge; ++y)
-      for (int row = y; row <= y + 2 * m_farthest; ++row) {
-        const int dy = between(row, y + m_farthest);
-        const int* inRow = &m_inRow[row * kTileEdge];
-        int* squared = &m_squared[y * kTileEdge];
-        for (int x = 0; x < kTileEdge; ++x)
-          squared[x] = std::min(squared[x], dy * dy + inRow[x] * inRow[x]);
-      }
-  }
-
-  const int m_farthest;
-  bool m_any = false;
-  std::vector<int> m_inRow;
-  std::array<int, kTileColumns> m_squared;
-};
+  return squared;
+}
 
 /** The obstacle of a column at about height z; or null. */
 const std::uint16_t* obstacleAt(const TileWindow<ObstacleTile>& obstacles, Column c, int z,
@@ -213,32 +179,6 @@ const std::uint16_t* obstacleAt(const TileWindow<ObstacleTile>& obstacles, Colum
 }
 
 }  // namespace
-
-/** A tile's surroundings. */
-class ClearanceMeter::Tile {
- public:
-  Tile(const ClearanceMeter& meter, const ObstacleGrid& obstacles, Column tile)
-      : m_meter(meter),
-        m_obstacles(obstacles, tile, meter.m_farthest),
-        m_flat(m_obstacles, tile, meter.m_farthest) {}
-
-  /** From the distance on at which the first obstacle of any height is. */
-  int clearance2(Column c, int z) const {
-    const int farthest = m_meter.m_farthest * m_meter.m_farthest;
-    if (!m_flat.any() || m_flat[indexInTile(c)] == farthest) return farthest;
-    const std::vector<Place>& places = m_meter.m_places;
-    const auto first = static_cast<std::ptrdiff_t>(m_meter.m_firstAt[m_flat[indexInTile(c)]]);
-    const auto nearest = std::find_if(places.begin() + first, places.end(), [&](const Place& p) {
-      return obstacleAt(m_obstacles, {c.x + p.x, c.y + p.y}, z, p.tolerance);
-    });
-    return nearest == places.end() ? farthest : nearest->clearance2;
-  }
-
- private:
-  const ClearanceMeter& m_meter;
-  const TileWindow<ObstacleTile> m_obstacles;
-  const FlatDistances m_flat;
-};
 
 ClearanceMeter::ClearanceMeter(const GroundShape& shape) : m_farthest(shape.largestClearance) {
   const int farthest2 = m_farthest * m_farthest;
@@ -269,10 +209,21 @@ ColumnBox ClearanceMeter::measure(const ObstacleGrid& obstacles, Column tile,
                                   SurfaceTile& measured) const {
   ColumnBox changed;
   if (measured.surfaces.empty()) return changed;
-  const Tile surroundings(*this, obstacles, tile);
+  const TileWindow<ObstacleTile> around(obstacles, tile, m_farthest);
+  const auto flat = flatDistances(around, tile, m_farthest);
+  const int farthest2 = m_farthest * m_farthest;
+  const auto clearance2At = [&](Column c, int z) {
+    const int flat2 = flat[indexInTile(c)];
+    if (flat2 == farthest2) return farthest2;
+    const auto first = m_places.begin() + static_cast<std::ptrdiff_t>(m_firstAt[flat2]);
+    const auto nearest = std::find_if(first, m_places.end(), [&](const Place& p) {
+      return obstacleAt(around, {c.x + p.x, c.y + p.y}, z, p.tolerance);
+    });
+    return nearest == m_places.end() ? farthest2 : nearest->clearance2;
+  };
   forSurfacesOf(tile, measured, [&](Column c, std::size_t i) {
     Surface& s = measured.surfaces[i];
-    const auto clearance2 = static_cast<std::uint16_t>(surroundings.clearance2(c, s.z));
+    const auto clearance2 = static_cast<std::uint16_t>(clearance2At(c, s.z));
     if (s.clearance2 != clearance2) changed.add(c);
     s.clearance2 = clearance2;
   });

@@ -1,4 +1,6 @@
 #pragma once
+#include <semantic_octree/ColumnScan.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -31,18 +33,7 @@ class GroundComponents {
 
 /** Where the vehicle must not be: for each column of a tile the heights (keys) about which it is an
  * obstacle. */
-struct ObstacleTile {
-  std::vector<std::uint16_t> heights;  ///< column by column, lowest first
-  std::array<std::uint16_t, kTileColumns + 1> first{};
-
-  const std::uint16_t* begin(int column) const { return heights.data() + first[column]; }
-  const std::uint16_t* end(int column) const { return heights.data() + first[column + 1]; }
-  bool any(int column) const { return first[column] != first[column + 1]; }
-  bool sameColumn(int column, const ObstacleTile& o) const {
-    return std::equal(begin(column), end(column), o.begin(column), o.end(column));
-  }
-};
-
+using ObstacleTile = semantic_octree::ByColumn<std::uint16_t>;
 using ObstacleGrid = ColumnGrid<ObstacleTile>;
 
 /** A surface that is not free (not drivable, or to be kept off) is an obstacle; and so is a column
@@ -69,8 +60,6 @@ class ClearanceMeter {
   ColumnBox measure(const ObstacleGrid& obstacles, Column tile, SurfaceTile& measured) const;
 
  private:
-  class Tile;
-
   /** A column to look at, seen from the surface's. */
   struct Place {
     int x, y;

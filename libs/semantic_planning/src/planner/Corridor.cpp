@@ -251,16 +251,6 @@ class CorridorSearch {
   Column m_goal;
 };
 
-std::vector<Column> tilesOnTheWay(const semantic_octree::SemanticOcTree& map,
-                                  const colored_graph::ClassOrder& order,
-                                  const PlannerOptions& options, const CorridorTask& task) {
-  CoarseGround ground(map, order, options);
-  const auto start = ground.near(task.start, task.startZ),
-             goal = ground.near(task.goal, task.goalZ);
-  if (!start || !goal) return {};
-  return CorridorSearch(ground, order).run(*start, *goal);
-}
-
 }  // namespace
 
 std::vector<Column> Corridor::tiles(double voxelSize) const {
@@ -302,7 +292,12 @@ Corridor findCorridor(const semantic_octree::SemanticOcTree& map,
   const GroundShape shape(options.vehicle, options.ground, order, voxel);
   Corridor corridor{
       {{task.start.x, task.start.y}}, task.width, voxel * reachOfGround(shape) + 4 * edge};
-  for (const Column& tile : tilesOnTheWay(map, order, options, task)) {
+  CoarseGround ground(map, order, options);
+  const auto start = ground.near(task.start, task.startZ),
+             goal = ground.near(task.goal, task.goalZ);
+  std::vector<Column> tiles;
+  if (start && goal) tiles = CorridorSearch(ground, order).run(*start, *goal);
+  for (const Column& tile : tiles) {
     const Column first = firstColumnOf(tile);
     corridor.way.emplace_back(semantic_octree::lowerBorderOf(first.x, voxel) + edge / 2,
                               semantic_octree::lowerBorderOf(first.y, voxel) + edge / 2);

@@ -15,15 +15,13 @@ void KeptPath::keep(const PlanResult& plan, double least) {
 }
 
 void KeptPath::groundChanged(const std::vector<Column>& tiles) {
-  m_changed |= !tiles.empty();
-  if (!tiles.empty() && m_plan.found() && isNear(tiles) && !lookAgain()) drop();
-}
-
-bool KeptPath::isNear(const std::vector<Column>& tiles) const {
+  if (tiles.empty()) return;
+  m_changed = true;
   const TileMarks marks(m_checker.ground(), tiles);
-  return std::any_of(m_plan.path.begin(), m_plan.path.end(), [&](const PathPoint& p) {
+  const bool isNear = std::any_of(m_plan.path.begin(), m_plan.path.end(), [&](const PathPoint& p) {
     return marks.anyIn({p.x, p.y, m_checker.reach()});
   });
+  if (isNear && !lookAgain()) drop();
 }
 
 /** \return whether it is free. */

@@ -63,7 +63,6 @@ class KeptPath {
   bool mayBeBeaten(const PlanResult& rest, double least) const;
 
  private:
-  bool isNear(const std::vector<Column>& tiles) const;
   bool lookAgain();
 
   const CollisionChecker& m_checker;

@@ -97,7 +97,7 @@ class LatticeSearch {
   }
 
   void addCurves(const Place& from, const Place& to) {
-    Slices::count(8);
+    Slices::count(10);
     for (const ReedsSheppCurve& curve : m_cost.curves(from.pose.pose, to.pose.pose)) {
       if (curve.length() > kLongest) continue;
       Length cost = from.cost + lengthDown(m_cost.of(curve));
@@ -108,7 +108,7 @@ class LatticeSearch {
 
   void drive(const Way& way, Place& to) {
     constexpr double kSlack = 1e-3;  // m: lengths are rounded
-    Slices::count(20);
+    Slices::count(25);
     m_budget.left = colored_graph::toMeters(to.cost - way.bound) + kSlack;
     auto profile = m_checker.profile(*way.curve, way.from->pose.z, to.pose.z, &m_budget);
     if (!profile) return;

@@ -17,8 +17,6 @@
 
 namespace semantic_planning {
 
-using colored_graph::EdgeProfile;
-using colored_graph::kNoVertex;
 using colored_graph::PathResult;
 
 namespace {
@@ -29,13 +27,6 @@ PlannerOptions validated(const PlannerOptions& options,
   if (mayNeedRoadmap(options) && isOfTree(options.roadmap.kind) && !hasAbstraction(map))
     throw std::logic_error("SemanticPlanner: the map keeps no G-values (setAbstraction)");
   return options;
-}
-
-/** Tiles that a corridor's ground is limited to. */
-std::optional<std::vector<Column>> tilesOf(const std::optional<Corridor>& corridor,
-                                           double voxelSize) {
-  if (!corridor) return std::nullopt;
-  return corridor->tiles(voxelSize);
 }
 
 /** A start's trouble as the goal's. */
@@ -87,7 +78,8 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
     : m_follower(map.follow()),
       m_options(validated(options, map)),
       m_isInCorridor(corridor),
-      m_ground(map, options.vehicle, options.ground, order, tilesOf(corridor, map.getResolution())),
+      m_ground(map, options.vehicle, options.ground, order,
+               corridor ? std::optional(corridor->tiles(map.getResolution())) : std::nullopt),
       m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order,
                 options.reading),
       m_prices(m_checker.order()),
@@ -153,17 +145,15 @@ bool PlannerCore::refuse(const Place& start, const Place& goal, PlanResult& resu
   return true;
 }
 
-std::optional<EdgeProfile> PlannerCore::evaluateTimed(const Roadmap& map, colored_graph::EdgeId e) {
-  const auto begin = std::chrono::steady_clock::now();
-  auto profile = map.evaluate(e);
-  m_evaluating += StageClock::millisecondsSince(begin);
-  return profile;
-}
-
 colored_graph::SearchOptions PlannerCore::searchOptions(const Roadmap& map) {
   colored_graph::SearchOptions search;
   search.lengthBound = [&map](VertexId a, VertexId b) { return map.lengthBound(a, b); };
-  search.evaluate = [this, &map](colored_graph::EdgeId e) { return evaluateTimed(map, e); };
+  search.evaluate = [this, &map](colored_graph::EdgeId e) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto profile = map.evaluate(e);
+    m_evaluating += StageClock::millisecondsSince(begin);
+    return profile;
+  };
   search.cancelled = m_options.cancelled;
   return search;
 }
@@ -202,10 +192,6 @@ void PlannerCore::standAt(const Place& start) {
   assume(groundBelow(m_ground, m_options.vehicle, order(), start.pose, start.z));
 }
 
-PathResult PlannerCore::search(Roadmap& map, VertexId start, VertexId goal) {
-  return m_search->search(map.graph(), start, goal, m_model, searchOptions(map));
-}
-
 void PlannerCore::makeRoadmap() {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   m_search->forget();
@@ -228,7 +214,7 @@ PlanResult PlannerCore::searchRoadmap(StageClock& clock) {
   clock.end("roadmap");
   m_evaluating = 0;
   const PathResult path =
-      isNew ? search(map, m_start, m_goal)
+      isNew ? m_search->search(map.graph(), m_start, m_goal, m_model, searchOptions(map))
             : m_search->replan(map.graph(), m_start, m_goal, m_model, searchOptions(map));
   clock.end("search", "evaluateEdges", m_evaluating);
   PlanResult result;

@@ -89,9 +89,6 @@ class PlannerCore {
   /** Refuses if nothing can be planned between these places. */
   bool refuse(const Place& start, const Place& goal, PlanResult& result);
   colored_graph::SearchOptions searchOptions(const Roadmap& map);
-  std::optional<colored_graph::EdgeProfile> evaluateTimed(const Roadmap& map,
-                                                          colored_graph::EdgeId e);
-  colored_graph::PathResult search(Roadmap& map, VertexId start, VertexId goal);
   void makeRoadmap();
   /** Puts start and goal where they are now. */
   void moveEnds(Roadmap& map);
