@@ -55,12 +55,24 @@ CellState SemanticOcTree::query(const Node& node) const {
   CellState state;
   state.occupancy = node.getOccupancy();
   state.status = isNodeOccupied(node) ? CellState::Status::Occupied : CellState::Status::Free;
+  if (node.isLeaf()) {
+    if (!node.hasClassRecord()) return state;
+    const Belief belief = statedBelief(node);
+    const auto p = belief.probabilities(numClasses());
+    for (int k = 1; k <= numClasses(); ++k) {
+      const int named = belief.indexOf(static_cast<ClassId>(k));
+      const double ofClass = named < 0 ? p.rest : p.named[named];
+      if (ofClass <= state.probability) continue;
+      state.likeliestClass = static_cast<ClassId>(k);
+      state.probability = ofClass;
+    }
+    return state;
+  }
   const std::vector<double> shares = classShares(node, m_filter);
   if (shares.empty()) return state;
   const auto best = std::max_element(shares.begin(), shares.end());
   state.likeliestClass = static_cast<ClassId>(best - shares.begin() + 1);
-  state.probability =
-      node.isLeaf() ? distribution(node)[state.likeliestClass] : state.occupancy * *best;
+  state.probability = state.occupancy * *best;
   return state;
 }
 
