@@ -57,15 +57,10 @@ CellState SemanticOcTree::query(const Node& node) const {
   state.status = isNodeOccupied(node) ? CellState::Status::Occupied : CellState::Status::Free;
   if (node.isLeaf()) {
     if (!node.hasClassRecord()) return state;
-    const Belief belief = statedBelief(node);
-    const auto p = belief.probabilities(numClasses());
-    for (int k = 1; k <= numClasses(); ++k) {
-      const int named = belief.indexOf(static_cast<ClassId>(k));
-      const double ofClass = named < 0 ? p.rest : p.named[named];
-      if (ofClass <= state.probability) continue;
-      state.likeliestClass = static_cast<ClassId>(k);
-      state.probability = ofClass;
-    }
+    const std::vector<double> p = distribution(node);
+    const auto best = std::max_element(p.begin() + 1, p.end());
+    state.likeliestClass = static_cast<ClassId>(best - p.begin());
+    state.probability = *best;
     return state;
   }
   const std::vector<double> shares = classShares(node, m_filter);
