@@ -33,7 +33,7 @@ MapMessages::MapMessages(ros2::Node& node, SemanticOcTree& map, std::string fram
       m_writesOctomap(node, "~/octomap", {true, true, 1}) {}
 
 void MapMessages::publish(Stamp stamp) {
-  m_changed.merge(m_voxels.follow());
+  if (m_writesMarkers.isRead() || m_writesPoints.isRead()) m_changed.merge(m_voxels.follow());
   publishMarkers(stamp);
   if (m_writesPoints.isRead()) publishPoints(stamp);
   if (m_writesOctomap.isRead()) publishOctomap(stamp);

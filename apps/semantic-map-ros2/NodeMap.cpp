@@ -62,9 +62,10 @@ std::set<std::uint64_t> OccupiedVoxels::follow() {
     for (const auto& [number, block] : std::exchange(m_blocks, {})) changed.insert(number);
   for (const OcTreeKey& tile : change.tiles) {
     const std::uint64_t number = numberOf(tile[0] / kBlock, tile[1] / kBlock, tile[2] / kBlock);
+    std::vector<Voxel> voxels = read(tile);
+    if (voxels.empty() && m_blocks.count(number) == 0) continue;
     Block& block = m_blocks[number];
     const auto known = block.emplace(numberOf(tile[0], tile[1], tile[2]), 0).first;
-    std::vector<Voxel> voxels = read(tile);
     const auto same = [](const Voxel& a, const Voxel& b) { return a.looksLike(b); };
     if (!std::equal(known->second.begin(), known->second.end(), voxels.begin(), voxels.end(), same))
       changed.insert(number);

@@ -55,12 +55,19 @@ CellState SemanticOcTree::query(const Node& node) const {
   CellState state;
   state.occupancy = node.getOccupancy();
   state.status = isNodeOccupied(node) ? CellState::Status::Occupied : CellState::Status::Free;
+  if (node.isLeaf()) {
+    if (!node.hasClassRecord()) return state;
+    const std::vector<double> p = distribution(node);
+    const auto best = std::max_element(p.begin() + 1, p.end());
+    state.likeliestClass = static_cast<ClassId>(best - p.begin());
+    state.probability = *best;
+    return state;
+  }
   const std::vector<double> shares = classShares(node, m_filter);
   if (shares.empty()) return state;
   const auto best = std::max_element(shares.begin(), shares.end());
   state.likeliestClass = static_cast<ClassId>(best - shares.begin() + 1);
-  state.probability =
-      node.isLeaf() ? distribution(node)[state.likeliestClass] : state.occupancy * *best;
+  state.probability = state.occupancy * *best;
   return state;
 }
 
