@@ -1,9 +1,8 @@
 #pragma once
 #include <colored_graph/ColoredReplanner.h>
 
-#include "EdgeCosts.h"
+#include "CostVector.h"
 #include "SearchParts.h"
-#include "VertexHeap.h"
 
 #include <algorithm>
 #include <stdexcept>
