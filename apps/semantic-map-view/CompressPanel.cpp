@@ -333,9 +333,7 @@ void WhyPanel::update() {
   const double voxelSize = m_viewer.layer().map().getResolution();
   std::vector<Balance> balances = live->balancesAround(m_cell->lowest);
   // What is below the cell would not say why it is as large as it is.
-  const auto isBelow = [&](const Balance& b) {
-    return live->cube(b.node).edge() < m_cell->edge();
-  };
+  const auto isBelow = [&](const Balance& b) { return live->cube(b.node).edge() < m_cell->edge(); };
   balances.erase(std::remove_if(balances.begin(), balances.end(), isBelow), balances.end());
   std::string told;
   for (const Balance& balance : balances)

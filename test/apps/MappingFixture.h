@@ -48,12 +48,7 @@ class Rawlog2SemanticMap : public FolderTest {
                      const Words& more = {}) const {
     for (const char* name : {"map.semantic", "summary.json", "top.png", "view.png"})
       folder.write(std::string("out/") + name, "of before");
-    const ProgramRun result = run(rawlog, more);
-    EXPECT_EQ(result.status, 1) << result.errors;
-    EXPECT_TRUE(contains(result.errors, "rawlog2semantic-map: "));
-    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
-    for (const std::string& part : parts)
-      EXPECT_TRUE(contains(result.errors, part)) << part << " is not in: " << result.errors;
+    ::expectRefusal(run(rawlog, more), joined({"rawlog2semantic-map: "}, parts));
     for (const char* name : {"map.semantic", "summary.json", "top.png", "view.png"})
       EXPECT_EQ(folder.read(std::string("out/") + name), "of before");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "out"), {}), 4);

@@ -182,10 +182,7 @@ TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
     if (entry.path().filename().string().rfind("tile_-1_-1_0.", 0) == 0) tile = entry.path();
   ASSERT_FALSE(tile.empty());
   std::filesystem::resize_file(tile, std::filesystem::file_size(tile) / 2);
-  const ProgramRun info = runProgram("semantic-map-info", {path("bad")});
-  EXPECT_EQ(info.status, 1);
-  EXPECT_TRUE(contains(info.errors, tile.string()));
-  EXPECT_TRUE(contains(info.errors, "truncated"));
+  expectRefusal(runProgram("semantic-map-info", {path("bad")}), {tile.string(), "truncated"});
   const std::string elsewhere = "30,3,0.5", inIt = "-3,-3,0.5";
   EXPECT_EQ(run("semantic-map-info", {path("bad"), "--at", elsewhere}).output,
             run("semantic-map-info", {path("tiles"), "--at", elsewhere}).output);
@@ -250,8 +247,7 @@ TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
 TEST_F(MapFolders, haveOneWriter) {
   SemanticOcTree map = MapFolder::emptyMap(path("tiles"));
   const MapFolder writer(map, path("tiles"), MapFolder::Access::Write);
-  const ProgramRun second = runProgram("rawlog2semantic-map", mapping("refused", true));
-  EXPECT_EQ(second.status, 1);
-  EXPECT_TRUE(contains(second.errors, "another process writes into this folder"));
+  expectRefusal(runProgram("rawlog2semantic-map", mapping("refused", true)),
+                {"another process writes into this folder"});
   run("semantic-map-info", {path("tiles")});
 }

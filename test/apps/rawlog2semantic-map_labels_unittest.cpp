@@ -112,11 +112,10 @@ TEST_F(CameraMapping, tellsTheShareOfLabeledPointsAndWarnsBelowAHalf) {
 }
 
 TEST_F(CameraMapping, labelImagesNeedAClassTable) {
-  const ProgramRun refused = runProgram(
-      "rawlog2semantic-map",
-      {path("camera.rawlog"), "--labels", path("labels"), "--output", path("without-classes")});
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_TRUE(contains(refused.errors, "labels need a class table: --classes"));
+  ::expectRefusal(
+      runProgram("rawlog2semantic-map", {path("camera.rawlog"), "--labels", path("labels"),
+                                         "--output", path("without-classes")}),
+      {"labels need a class table: --classes"});
 }
 
 TEST_F(CameraMapping, theIniFileMayCalibrateTheCamera) {
@@ -364,11 +363,9 @@ TEST_F(Rawlog2SemanticMap, missingFilesAreRefusedByName) {
 TEST_F(Rawlog2SemanticMap, anOutputFolderThatCannotBeWrittenIsRefusedByName) {
   const fs::path file = folder.write("file", "of before");
   for (const fs::path& output : {file, file / "below"}) {
-    const ProgramRun result = runProgram(
-        "rawlog2semantic-map",
-        {"--config", path("small.ini"), "--output", output.string(), path("small.rawlog")});
-    EXPECT_EQ(result.status, 1);
-    EXPECT_TRUE(contains(result.errors, output.string() + ": cannot write"));
+    ::expectRefusal(runProgram("rawlog2semantic-map", {"--config", path("small.ini"), "--output",
+                                                       output.string(), path("small.rawlog")}),
+                    {output.string() + ": cannot write"});
     EXPECT_EQ(folder.read("file"), "of before");
   }
 }

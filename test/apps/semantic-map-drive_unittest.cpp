@@ -239,7 +239,6 @@ TEST_F(DrivesInFolders, AreTheDrivesInTheMapInOnePieceToTheLastBit) {
 }
 
 TEST_F(DrivesInFolders, HaveNoWindow) {
-  const ProgramRun run = drive({"--map", of("tiles"), "--live"});
-  EXPECT_EQ(run.status, 1);
-  EXPECT_TRUE(contains(run.errors, "--live: a map in a folder of tiles is not shown"));
+  expectRefusal(drive({"--map", of("tiles"), "--live"}),
+                {"--live: a map in a folder of tiles is not shown"});
 }

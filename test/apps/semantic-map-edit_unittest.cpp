@@ -33,9 +33,8 @@ class SemanticMapEdit : public MapTool {
 }  // namespace
 
 TEST_F(SemanticMapEdit, timePassesForWhatHasAHalfLife) {
-  const ProgramRun refused = edit("map.semantic", "aged.semantic", {"--decay", "10"});
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_TRUE(contains(refused.errors, "has a half-life; --half-lives gives them"));
+  expectRefusal(edit("map.semantic", "aged.semantic", {"--decay", "10"}),
+                {"has a half-life; --half-lives gives them"});
   EXPECT_FALSE(std::filesystem::exists(path("aged.semantic")));
 
   folder.write("half-lives.yaml",

@@ -28,8 +28,7 @@ SemanticOcTree yard() {
       if (x > 3 && x < 3.2)
         for (double z = 0.3; z < 1.1; z += 0.2) add(x, y, z, 4);
     }
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation().z() = 4;
+  Eigen::Isometry3d T(Eigen::Translation3d(0, 0, 4));
   for (int i = 0; i < 3; ++i) map.insert(cloud, T);
   return map;
 }
@@ -130,8 +129,7 @@ TEST_F(CostExport, aStoreyIsWhatIsAroundItsFloor) {
           cloud.classes.push_back(storey == 0 ? 1 : 2);
         }
       }
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation().z() = 3 * storey + 1.5;
+    Eigen::Isometry3d T(Eigen::Translation3d(0, 0, 3 * storey + 1.5));
     for (int i = 0; i < 3; ++i) map.insert(cloud, T);
   }
   saveTree(map, path("map.semantic"));

@@ -231,14 +231,12 @@ TEST_F(MapRadio, mapsOfOtherClassesAreRefusedAndNothingIsLost) {
 }
 
 TEST_F(MapRadio, nobodyThereAndPortsInUseAreSaid) {
-  const ProgramRun alone = runProgram(
-      "semantic-map-receive", {"localhost:9", "--timeout", "0.3", "-o", path("r.semantic")});
-  EXPECT_EQ(alone.status, 1);
-  EXPECT_TRUE(contains(alone.errors, "nobody answers at 127.0.0.1:9"));
-  const ProgramRun waiting =
-      runProgram("semantic-map-send", {path("map.semantic"), "--port", "0", "--timeout", "0.3"});
-  EXPECT_EQ(waiting.status, 1);
-  EXPECT_TRUE(contains(waiting.errors, "nobody asked for the map at port"));
+  expectRefusal(runProgram("semantic-map-receive",
+                           {"localhost:9", "--timeout", "0.3", "-o", path("r.semantic")}),
+                {"nobody answers at 127.0.0.1:9"});
+  expectRefusal(
+      runProgram("semantic-map-send", {path("map.semantic"), "--port", "0", "--timeout", "0.3"}),
+      {"nobody asked for the map at port"});
   EXPECT_TRUE(
       contains(runProgram("semantic-map-receive", {"localhost:x", "-o", path("r.semantic")}).errors,
                "expected HOST:PORT"));
@@ -322,9 +320,7 @@ TEST_F(MapRadio, onlyWhoHasTheKeyIsHeard) {
     for (const auto& key : {Words(), {"--key", path("other")}}) {
       Words arguments = key;
       arguments.insert(arguments.end(), {"--timeout", "0.5"});
-      const ProgramRun stranger = receive(port, arguments);
-      EXPECT_EQ(stranger.status, 1);
-      EXPECT_TRUE(contains(stranger.errors, "nobody answers at"));
+      expectRefusal(receive(port, arguments), {"nobody answers at"});
     }
     succeeded(receive(port, {"--key", path("key")}));
   });

@@ -256,8 +256,8 @@ TEST(VisiblePixels, lieWhereLensAndPoseSay) {
 
 TEST(VisiblePixels, doNotSeeWhatADisplacedCameraCannotSee) {
   const BoardBeforeWall scene;
-  Isometry3d T_camera_points = Isometry3d::Identity();
-  T_camera_points.translation().x() = -0.3;  // the camera is to the right: the board moves left
+  Isometry3d T_camera_points(
+      Eigen::Translation3d(-0.3, 0, 0));  // the camera is to the right: the board moves left
   const auto pixels = visiblePixels(scene.points, T_camera_points, camera(), 1.5);
   int hidden = 0, wronglyHidden = 0, wronglySeen = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -284,8 +284,7 @@ TEST(VisiblePixels, seeGroundAtGrazingAnglesFromBesideTheSensor) {
       const double range = 1.7 / std::tan(down * M_PI / 180), a = turn * M_PI / 180;
       ground.emplace_back(range * std::sin(a), 1.7, range * std::cos(a));
     }
-  Isometry3d T_camera_points = Isometry3d::Identity();
-  T_camera_points.translation() = Eigen::Vector3d(0, -0.3, -0.3);
+  Isometry3d T_camera_points(Eigen::Translation3d(0, -0.3, -0.3));
   const auto c = camera(1240, 376, 720);
   const auto all = visiblePixels(ground, T_camera_points, c, 0);
   const auto seen = visiblePixels(ground, T_camera_points, c, 1.5);

@@ -26,9 +26,9 @@ struct Variant {
 
 inline AbstractionOptions abstractionOf(const Variant& variant) {
   AbstractionOptions options;
-  options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
-                           tree_abstraction::irrelevant("2", 0.5, {2})};
-  options.weights.alpha = variant.alpha;
+  options.weights = {
+      {tree_abstraction::relevant("1", 1, {1}), tree_abstraction::irrelevant("2", 0.5, {2})},
+      variant.alpha};
   options.blockSize = variant.blockSize;
   options.frame = variant.frame;
   return options;

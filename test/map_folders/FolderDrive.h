@@ -44,9 +44,9 @@ inline std::vector<PosedCloud> someScans(unsigned seed, int number, bool softLab
 
 inline AbstractionOptions someAbstraction(double alpha = 0.01) {
   AbstractionOptions options;
-  options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
-                           tree_abstraction::irrelevant("2", 0.5, {2})};
-  options.weights.alpha = alpha;
+  options.weights = {
+      {tree_abstraction::relevant("1", 1, {1}), tree_abstraction::irrelevant("2", 0.5, {2})},
+      alpha};
   return options;
 }
 

@@ -129,8 +129,7 @@ SemanticOcTree mapOfLabels(const std::vector<Label>& labels) {
     if (cloud.empty()) return map;
     InsertionOptions insertion;
     insertion.maxRange = 100;
-    Eigen::Isometry3d above = Eigen::Isometry3d::Identity();
-    above.translation().z() = 50;
+    Eigen::Isometry3d above(Eigen::Translation3d(0, 0, 50));
     for (Eigen::Vector3f& p : cloud.points) p.z() -= 50;
     map.insert(cloud, above, insertion);
   }
@@ -262,8 +261,7 @@ TEST(SmoothedView, worksAtTheMapsBorderAndOutside) {
     LabeledCloud cloud;
     cloud.points = {{1.5f, 0.f, 0.f}};
     cloud.classes = {id};
-    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-    T_map_sensor.translation() = place - Eigen::Vector3d(1.5, 0, 0);
+    Eigen::Isometry3d T_map_sensor(Eigen::Translation3d(place - Eigen::Vector3d(1.5, 0, 0)));
     map.insert(cloud, T_map_sensor);
   };
   const SmoothedView view(map);

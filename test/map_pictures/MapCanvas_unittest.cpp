@@ -206,8 +206,7 @@ TEST(MapCanvas, theLegendStandsBesideThePictureAndNamesTheMapsClassesFirst) {
 TEST(MapCanvas, coarseCellsAreHatchedAndTheLegendSaysSo) {
   auto tree = paintedField();
   semantic_octree::AbstractionOptions options;
-  options.weights.terms = {tree_abstraction::relevant("wall", 1, {3})};
-  options.weights.alpha = 1;
+  options.weights = {{tree_abstraction::relevant("wall", 1, {3})}, 1};
   options.blockSize = 1.6;
   setAbstraction(tree, options);
   MapCanvas fine = canvas(), coarse = canvas();

@@ -138,8 +138,7 @@ TEST(TopView, anEmptyMapIsAnEmptySheet) {
 TEST(TopView, aMapOfOneEnormousCellIsDrawnWithoutEnormousMemory) {
   SemanticOcTree tree = paintedField();
   semantic_octree::AbstractionOptions options;
-  options.weights.terms = {tree_abstraction::relevant("road", 1, {1})};
-  options.weights.alpha = 1;
+  options.weights = {{tree_abstraction::relevant("road", 1, {1})}, 1};
   options.blockSize = 0;
   options.frame = semantic_octree::AbstractionOptions::Frame::Charged;
   setAbstraction(tree, options);

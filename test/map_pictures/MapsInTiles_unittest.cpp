@@ -39,9 +39,9 @@ SemanticOcTree wideField() {
   SemanticOcTree tree(kVoxel, paintedClasses());
   for (int patch = 0; patch < kPatches * kPatches; ++patch) {
     const int column = patch / kPatches, row = patch % kPatches;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() << kVoxel * kEdge * (column - 56), kVoxel * kEdge * (row - 56),
-        3 * std::sin(column / 9.0) * std::cos(row / 7.0);
+    Eigen::Isometry3d T(Eigen::Translation3d(kVoxel * kEdge * (column - 56),
+                                             kVoxel * kEdge * (row - 56),
+                                             3 * std::sin(column / 9.0) * std::cos(row / 7.0)));
     semantic_types::LabeledCloud cloud;
     for (int i = 0; i < kEdge * kEdge; ++i) {
       cloud.points.emplace_back(float(kVoxel * (i / kEdge - 3.5)),

@@ -39,8 +39,7 @@ inline semantic_octree::SemanticOcTree paintedField(const Eigen::Vector2d& corne
       if (wallHeight > 0) add(x, y, wallHeight - 0.9f, 3);
     }
   semantic_octree::SemanticOcTree tree(0.2, paintedClasses());
-  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-  T_map_sensor.translation().z() = 1;
+  Eigen::Isometry3d T_map_sensor(Eigen::Translation3d(0, 0, 1));
   tree.insert(cloud, T_map_sensor);
   return tree;
 }

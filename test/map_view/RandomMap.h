@@ -35,8 +35,7 @@ inline semantic_octree::SemanticOcTree randomMap(unsigned seed, int numScans = 3
       if (unit(random) < 0.1f) id = static_cast<semantic_types::ClassId>(1 + random() % 3);
       cloud.classes.push_back(id);
     }
-    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-    T_map_sensor.translation() = Eigen::Vector3d(scan, 0, 4);
+    Eigen::Isometry3d T_map_sensor(Eigen::Translation3d(scan, 0, 4));
     tree.insert(cloud, T_map_sensor);
   }
   return tree;

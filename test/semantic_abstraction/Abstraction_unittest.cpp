@@ -207,8 +207,7 @@ void expectShares(const std::vector<double>& sum, const std::vector<double>& p) 
 
 AbstractionOptions keepingPosts() {
   AbstractionOptions options;
-  options.weights.terms = {tree_abstraction::relevant("posts", 1.0, {1})};
-  options.weights.alpha = 0.02;
+  options.weights = {{tree_abstraction::relevant("posts", 1.0, {1})}, 0.02};
   options.blockSize = 3.2;
   return options;
 }

@@ -14,9 +14,7 @@ constexpr int K = 24;
 AbstractionOptions withTerms(int terms) {
   AbstractionOptions o;
   for (int t = 1; t <= terms; ++t)
-    o.weights.terms.push_back(
-        tree_abstraction::relevant("class " + std::to_string(t), 1.0 / t, {t}));
-  o.weights.alpha = 0.002;
+    o.weights = {{tree_abstraction::relevant("class " + std::to_string(t), 1.0 / t, {t})}, 0.002};
   return o;
 }
 

@@ -83,8 +83,7 @@ void expectSound(const SemanticOcTree& tree) {
 
 AbstractionOptions someTerms() {
   AbstractionOptions options;
-  options.weights.terms.push_back(tree_abstraction::relevant("1", 1, {1}));
-  options.weights.alpha = 0.001;
+  options.weights = {{tree_abstraction::relevant("1", 1, {1})}, 0.001};
   return options;
 }
 

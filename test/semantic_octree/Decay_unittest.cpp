@@ -31,9 +31,9 @@ ClassTable classes(bool freeDecays = true) {
 
 AbstractionOptions abstraction(double alpha = 0.01) {
   AbstractionOptions options;
-  options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
-                           tree_abstraction::irrelevant("2", 0.5, {2})};
-  options.weights.alpha = alpha;
+  options.weights = {
+      {tree_abstraction::relevant("1", 1, {1}), tree_abstraction::irrelevant("2", 0.5, {2})},
+      alpha};
   return options;
 }
 

@@ -34,9 +34,9 @@ SemanticOcTree mapOf(unsigned seed, int numScans, bool withAbstraction) {
   SemanticOcTree map(0.5, numberedClasses(5));
   if (withAbstraction) {
     AbstractionOptions options;
-    options.weights.terms = {tree_abstraction::relevant("1", 1, {1}),
-                             tree_abstraction::irrelevant("2", 0.5, {2})};
-    options.weights.alpha = 0.01;
+    options.weights = {
+        {tree_abstraction::relevant("1", 1, {1}), tree_abstraction::irrelevant("2", 0.5, {2})},
+        0.01};
     setAbstraction(map, options);
   }
   for (int i = 0; i < numScans; ++i) {

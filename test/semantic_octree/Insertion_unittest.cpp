@@ -111,9 +111,7 @@ LabeledCloud threePoints() {
 }
 
 Eigen::Isometry3d at(double x, double y, double z) {
-  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-  T_map_sensor.translation() << x, y, z;
-  return T_map_sensor;
+  return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
 }  // namespace
@@ -215,8 +213,7 @@ TEST(SingleScans, ofBeamsAlongVoxelBordersStaysInTheBeamsNeighborhood) {
     LabeledCloud cloud;
     const auto whole = [&] { return static_cast<float>(static_cast<int>(random() % 13) - 6); };
     cloud.points = {{whole(), whole(), whole()}};
-    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-    T_map_sensor.translation() << whole(), whole(), whole();
+    Eigen::Isometry3d T_map_sensor(Eigen::Translation3d(whole(), whole(), whole()));
     tree.insert(cloud, T_map_sensor);
     const Eigen::Vector3d begin = T_map_sensor.translation(), beam = cloud.points[0].cast<double>();
     for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {

@@ -55,8 +55,7 @@ Tiles asSet(const TileChange& change) {
 
 AbstractionOptions someTerms(double alpha) {
   AbstractionOptions options;
-  options.weights.terms.push_back(tree_abstraction::relevant("1", 1, {1}));
-  options.weights.alpha = alpha;
+  options.weights = {{tree_abstraction::relevant("1", 1, {1})}, alpha};
   return options;
 }
 

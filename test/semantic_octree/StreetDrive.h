@@ -38,8 +38,7 @@ inline SemanticOcTree emptyMap(bool withAbstraction = false,
   if (!withAbstraction) return map;
   AbstractionOptions options;
   for (int i = 1; i <= 4; ++i)
-    options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(i), 1, {i}));
-  options.weights.alpha = 0.02;
+    options.weights = {{tree_abstraction::relevant(std::to_string(i), 1, {i})}, 0.02};
   setAbstraction(map, options);
   return map;
 }

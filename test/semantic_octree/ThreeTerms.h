@@ -6,9 +6,9 @@
 inline semantic_octree::AbstractionOptions threeTerms(double alpha, int classes, double all) {
   using namespace tree_abstraction;
   semantic_octree::AbstractionOptions options;
-  options.weights.terms = {relevant("posts", 1.0, {1}), irrelevant("ground", 0.3, {2, 3}),
-                           wholeClassVariable("everything", all, classes)};
-  options.weights.alpha = alpha;
+  options.weights = {{relevant("posts", 1.0, {1}), irrelevant("ground", 0.3, {2, 3}),
+                      wholeClassVariable("everything", all, classes)},
+                     alpha};
   options.blockSize = 3.2;
   return options;
 }

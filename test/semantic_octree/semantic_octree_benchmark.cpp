@@ -40,8 +40,7 @@ SemanticOcTree streetMap(double resolution, int scans, bool withAbstraction = fa
   SemanticOcTree map(resolution, numberedClasses(K));
   AbstractionOptions options;
   for (int i = 1; i <= 4; ++i)
-    options.weights.terms.push_back(tree_abstraction::relevant(std::to_string(i), 1, {i}));
-  options.weights.alpha = 0.02;
+    options.weights = {{tree_abstraction::relevant(std::to_string(i), 1, {i})}, 0.02};
   if (withAbstraction) setAbstraction(map, options);
   for (int i = 0; i < scans; ++i) map.insert(street().cloud, street().T_map_sensor, insertion());
   return map;

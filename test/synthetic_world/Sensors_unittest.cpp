@@ -10,9 +10,7 @@ using namespace synthetic_world;
 using V = Eigen::Vector3d;
 
 Eigen::Isometry3d raised(double height) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation().z() = height;
-  return T;
+  return Eigen::Isometry3d(Eigen::Translation3d(0, 0, height));
 }
 
 TEST(Lidar, ringsOnFlatGroundAreCirclesOfKnownRadius) {
@@ -117,8 +115,7 @@ TEST(Random, normalVariatesHaveTheMomentsOfTheNormalDistribution) {
 CameraFrame wall(const SensorNoise& noise, FrameSeed seed = {}) {
   CameraOptions options;
   options.noise = noise, options.color = false;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation().z() = 4;
+  Eigen::Isometry3d T(Eigen::Translation3d(0, 0, 4));
   options.horizontalFov = 60;
   return renderCamera(small_world::withWall(), T, options, seed);
 }

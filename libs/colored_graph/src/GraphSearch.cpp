@@ -9,7 +9,6 @@
 
 #include "CostVector.h"
 #include "SearchParts.h"
-#include "VertexHeap.h"
 
 namespace colored_graph {
 
