@@ -114,7 +114,9 @@ TEST(UnknownPrior, whoLooksOnChangesNothingOfIt) {
     const int px = (kOrigin + x) / 4, py = kOrigin / 4;
     const float looked = seen.lookAt(px, py).onGround.gain;
     EXPECT_EQ(seen.patch(px, py).onGround.gain, alone.patch(px, py).onGround.gain) << x;
-    if (x != 20) EXPECT_EQ(looked, alone.patch(px, py).onGround.gain) << x;
+    if (x != 20) {
+      EXPECT_EQ(looked, alone.patch(px, py).onGround.gain) << x;
+    }
   }
 }
 
