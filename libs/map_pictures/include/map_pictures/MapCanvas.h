@@ -135,8 +135,9 @@ class MapCanvas {
    * is gray. Its classes are the first entries of the legend. \param style its heights and
    * occupancy \throw std::invalid_argument as PictureStyle::validate(). */
   void drawMap(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
-  /** The same, of what lies on the canvas or up to 5 m beside it: as fine as that can be drawn, and
-   * cut off as if there were no more. The rest of a large map is not looked at. */
+  /** Draws what of a map lies on the canvas or up to 5 m beside it, otherwise as drawMap(): as fine
+   * as this part can be drawn, and cut off as if there were no more. The rest of a large map is not
+   * looked at. */
   void drawMapAround(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
   /** Copies what a canvas of the same scale shows of a part, m. The legend stays. */
   void paste(const MapCanvas& from, const Eigen::AlignedBox2d& part);
@@ -158,7 +159,7 @@ class MapCanvas {
   const cv::Mat& picture() const { return m_picture; }
   /** With the axes and a scale bar in its emptiest corners; empty paper stays as it is. */
   cv::Mat withScale() const;
-  /** With these, and with the legend beside it. */
+  /** The picture with axes and scale bar, and with the legend beside it. */
   cv::Mat sheet(const std::string& title = {}) const {
     return withLegend(withScale(), title, m_legend);
   }
