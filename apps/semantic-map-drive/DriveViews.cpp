@@ -98,18 +98,6 @@ Eigen::AlignedBox2d wholeVoxels(const Eigen::AlignedBox2d& box, double voxel) {
           ((box.max().array() / voxel).ceil() * voxel).matrix()};
 }
 
-/** Where tiles changed; empty if none did. */
-Eigen::AlignedBox2d columnsOf(const std::vector<octomap::OcTreeKey>& tiles, double voxel) {
-  constexpr int kTile = 8;  // voxels
-  Eigen::AlignedBox2d box;
-  for (const octomap::OcTreeKey& tile : tiles) {
-    const Eigen::Vector2d low =
-        voxel * (Eigen::Vector2d(tile[0], tile[1]).array() - semantic_octree::kKeyOfOrigin);
-    box.extend(low).extend((low.array() + kTile * voxel).matrix());
-  }
-  return box;
-}
-
 }  // namespace
 
 std::string caption(const DriveLoop& loop) {
@@ -155,15 +143,18 @@ MapCanvas DrivePicture::draw(DriveLoop& loop) const {
  * around that. Known ground says something about unknown ground within 10 m. */
 void DrivePicture::follow(DriveLoop& loop) {
   constexpr double kBeside = 3;  // m
-  const double kChanged = m_showsLeft ? 11 : 6;
+  constexpr int kTile = 8;       // voxels
+  const double kChanged = m_showsLeft ? 11 : 6, voxel = loop.mapper().map().getResolution();
   if (!m_changes) m_changes = loop.follow();
   const semantic_octree::TileChange change = m_changes->tiles();
-  if (change.all) {
-    m_map = drawMap(m_region, loop);
-  } else if (!change.tiles.empty()) {
-    const auto columns = columnsOf(change.tiles, loop.mapper().map().getResolution());
-    m_map->paste(drawMap(grown(columns, kChanged + kBeside), loop), grown(columns, kChanged));
+  if (change.all) m_map = drawMap(m_region, loop);
+  if (change.all || change.tiles.empty()) return;
+  Eigen::AlignedBox2d tiles;
+  for (const octomap::OcTreeKey& tile : change.tiles) {
+    const Eigen::Array2d low = Eigen::Array2d(tile[0], tile[1]) - semantic_octree::kKeyOfOrigin;
+    tiles.extend((low * voxel).matrix()).extend(((low + kTile) * voxel).matrix());
   }
+  m_map->paste(drawMap(grown(tiles, kChanged + kBeside), loop), grown(tiles, kChanged));
 }
 
 cv::Mat DrivePicture::frame(DriveLoop& loop) {
@@ -196,7 +187,6 @@ void addOtherTrack(MapCanvas& canvas, const DriveRecord& record) {
 
 using mrpt::math::TPoint3D;
 using mrpt::math::TPoint3Df;
-using mrpt::math::TPose2D;
 using namespace mrpt_compat::drawing;
 
 namespace {

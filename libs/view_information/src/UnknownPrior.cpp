@@ -141,9 +141,8 @@ const UnknownPatch& LearnedPrior::patch(int x, int y) {
 
 UnknownPatch LearnedPrior::lookAt(int x, int y) const {
   const auto block = m_blocks.find(keyOf(x / kBlock, y / kBlock));
-  Patch patch;
-  if (block != m_blocks.end())
-    patch = (*block->second)[static_cast<std::size_t>(x % kBlock * kBlock + y % kBlock)];
+  const auto at = static_cast<std::size_t>(x % kBlock * kBlock + y % kBlock);
+  Patch patch = block == m_blocks.end() ? Patch() : (*block->second)[at];
   if (patch.isStale) predict(x, y, patch);
   return patch.prior;
 }
