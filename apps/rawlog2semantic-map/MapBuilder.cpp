@@ -271,7 +271,7 @@ void MapBuilder::checkFoundInMap() const {
   if (m_summary.slam->referenced == 0)
     throw std::runtime_error(
         "no scan was found in the map that is there: nothing is added to it; poses have to begin "
-        "near where the robot is in it");
+        "near where the robot is in it, and another place needs a folder of its own");
 }
 
 void MapBuilder::noteLabels() const {

@@ -4,10 +4,12 @@
 #include <mrpt/core/format.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt_compat/Drawing.h>
+#include <semantic_octree/Keys.h>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "label_overlay/LabelOverlay.h"
 
@@ -59,6 +61,43 @@ void drawRobot(MapCanvas& canvas, const DriveLoop& loop) {
   canvas.explain({"robot", kRobotColor});
 }
 
+const map_pictures::LegendEntry kLeft{"may still tell something", kLeftColor};
+
+/** In shades of what unknown space promises that nothing is known about: it is the same pink in all
+ * frames, while the robot learns what to expect. */
+void shadeWhatIsLeft(MapCanvas& canvas, const Eigen::AlignedBox2d& part, DriveLoop& loop) {
+  constexpr double kFar = 1000, kOfUnknown = 0.35, kMost = 0.85, kLeast = 0.01;  // m, shares
+  const double anywhere = loop.leftToSee(part.max().x() + kFar, part.max().y());
+  if (anywhere <= 0) return;
+  const double voxel = loop.mapper().map().getResolution(), edge = 2 * voxel;
+  const Eigen::Vector2d low = (part.min().array() / edge).floor() * edge;
+  for (double x = low.x() + voxel; x < part.max().x(); x += edge)
+    for (double y = low.y() + voxel; y < part.max().y(); y += edge) {
+      const double left = loop.leftToSee(x - voxel / 2, y - voxel / 2);
+      const double share = std::min(kMost, kOfUnknown * left / anywhere);
+      if (share >= kLeast) canvas.fillSquare({x, y}, edge, kLeftColor, share);
+    }
+  canvas.explain(kLeft);
+}
+
+void drawDrive(MapCanvas& canvas, const DriveLoop& loop) {
+  drawTrack(canvas, loop.record(), "driven", kTrack);
+  drawRoute(canvas, loop.controller().tracker());
+  drawEnd(canvas, "start", loop.start(), kStart);
+  if (!loop.explores()) drawEnd(canvas, "goal", loop.goal(), kGoal);
+  drawRobot(canvas, loop);
+}
+
+Eigen::AlignedBox2d grown(const Eigen::AlignedBox2d& box, double meters) {
+  return {box.min().array() - meters, box.max().array() + meters};
+}
+
+/** Made of whole voxels. */
+Eigen::AlignedBox2d wholeVoxels(const Eigen::AlignedBox2d& box, double voxel) {
+  return {((box.min().array() / voxel).floor() * voxel).matrix(),
+          ((box.max().array() / voxel).ceil() * voxel).matrix()};
+}
+
 }  // namespace
 
 std::string caption(const DriveLoop& loop) {
@@ -78,35 +117,57 @@ void DrivePicture::include(const DriveRecord& record) {
 }
 
 /** Each voxel is a whole number of pixels: sharp, and nothing flickers from frame to frame. */
-MapCanvas DrivePicture::paperFor(double voxel) const {
-  const Eigen::Array2d low = (m_region.min().array() / voxel).floor(),
-                       high = (m_region.max().array() / voxel).ceil();
-  const Eigen::Array2d voxels = high - low;
-  const double pixels = std::ceil(m_longerEdge / voxels.maxCoeff());
-  return {{(low * voxel).matrix(), (high * voxel).matrix()},
-          cv::Size(int(voxels.x() * pixels), int(voxels.y() * pixels))};
-}
-
-MapCanvas DrivePicture::draw(const DriveLoop& loop) const {
-  MapCanvas canvas = paperFor(loop.mapper().map().getResolution());
+MapCanvas DrivePicture::drawMap(const Eigen::AlignedBox2d& part, DriveLoop& loop) const {
+  const semantic_octree::SemanticOcTree& map = loop.mapper().map();
+  const double voxel = map.getResolution();
+  const Eigen::AlignedBox2d whole = wholeVoxels(m_region, voxel),
+                            drawn = wholeVoxels(part, voxel).intersection(whole);
+  const double pixels = std::ceil(m_longerEdge * voxel / whole.sizes().maxCoeff());
+  const Eigen::Array2d size = (drawn.sizes().array() / voxel).round() * pixels;
+  MapCanvas canvas(drawn, cv::Size(int(size.x()), int(size.y())));
   map_pictures::PictureStyle style;
   style.maxAboveGround = kCutAbove;
-  canvas.drawMapAround(loop.mapper().map(), style);
-  drawTrack(canvas, loop.record(), "driven", kTrack);
-  drawRoute(canvas, loop.controller().tracker());
-  drawEnd(canvas, "start", loop.start(), kStart);
-  if (!loop.explores()) drawEnd(canvas, "goal", loop.goal(), kGoal);
-  drawRobot(canvas, loop);
+  style.maxHeight = std::numeric_limits<double>::infinity();  // a part of it is no room
+  canvas.drawMapAround(map, style);
+  if (m_showsLeft) shadeWhatIsLeft(canvas, drawn, loop);
   return canvas;
 }
 
-cv::Mat DrivePicture::frame(const DriveLoop& loop) const {
+MapCanvas DrivePicture::draw(DriveLoop& loop) const {
+  MapCanvas canvas = drawMap(m_region, loop);
+  drawDrive(canvas, loop);
+  return canvas;
+}
+
+/** A voxel changes how the ground within 3 m and what stands on it is drawn, and the relief 2 m
+ * around that. Known ground says something about unknown ground within 10 m. */
+void DrivePicture::follow(DriveLoop& loop) {
+  constexpr double kBeside = 3;  // m
+  constexpr int kTile = 8;       // voxels
+  const double kChanged = m_showsLeft ? 11 : 6, voxel = loop.mapper().map().getResolution();
+  if (!m_changes) m_changes = loop.follow();
+  const semantic_octree::TileChange change = m_changes->tiles();
+  if (change.all) m_map = drawMap(m_region, loop);
+  if (change.all || change.tiles.empty()) return;
+  Eigen::AlignedBox2d tiles;
+  for (const octomap::OcTreeKey& tile : change.tiles) {
+    const Eigen::Array2d low = Eigen::Array2d(tile[0], tile[1]) - semantic_octree::kKeyOfOrigin;
+    tiles.extend((low * voxel).matrix()).extend(((low + kTile) * voxel).matrix());
+  }
+  m_map->paste(drawMap(grown(tiles, kChanged + kBeside), loop), grown(tiles, kChanged));
+}
+
+cv::Mat DrivePicture::frame(DriveLoop& loop) {
   constexpr int kBelow = 64;  // pixels
-  const MapCanvas canvas = draw(loop);
+  follow(loop);
+  MapCanvas canvas = m_map->blank();
+  canvas.paste(*m_map, m_region);
+  drawDrive(canvas, loop);
   const auto& classes = loop.mapper().map().classes();
   std::vector<std::size_t> all(classes.size() + 1, 1);
   all[0] = 0;
   auto legend = map_pictures::classLegend(classes, all);
+  if (m_showsLeft) legend.push_back(kLeft);
   legend.push_back({"driven", kTrack});
   legend.push_back({"path", kPath});
   legend.push_back({"start", kStart});
@@ -120,33 +181,12 @@ cv::Mat DrivePicture::frame(const DriveLoop& loop) const {
   return map_pictures::withTitle(map_pictures::withLegend(picture, {}, legend), caption(loop));
 }
 
-cv::Mat DrivePicture::whatIsLeft(DriveLoop& loop) const {
-  constexpr double kEdge = 0.4, kMost = 0.2, kLeast = 0.01;  // m, nats in a column
-  MapCanvas canvas = paperFor(loop.mapper().map().getResolution());
-  map_pictures::PictureStyle style;
-  style.maxAboveGround = kCutAbove;
-  canvas.drawMapAround(loop.mapper().map(), style);
-  for (double x = m_region.min().x(); x < m_region.max().x(); x += kEdge)
-    for (double y = m_region.min().y(); y < m_region.max().y(); y += kEdge) {
-      const double left = loop.leftToSee(x, y);
-      if (left < kLeast) continue;
-      canvas.drawThrough(0.85 * std::min(1.0, left / kMost), [&] {
-        canvas.fillSquare({x, y}, kEdge, kLeftColor);
-      });
-    }
-  canvas.explain({"may still tell something", kLeftColor});
-  drawTrack(canvas, loop.record(), "driven", kTrack);
-  drawRobot(canvas, loop);
-  return map_pictures::withTitle(canvas.sheet(), caption(loop));
-}
-
 void addOtherTrack(MapCanvas& canvas, const DriveRecord& record) {
   drawTrack(canvas, record, "driven before", kOtherTrack);
 }
 
 using mrpt::math::TPoint3D;
 using mrpt::math::TPoint3Df;
-using mrpt::math::TPose2D;
 using namespace mrpt_compat::drawing;
 
 namespace {

@@ -1,7 +1,9 @@
 #pragma once
 #include <map_pictures/MapCanvas.h>
+#include <semantic_octree/MapFollower.h>
 
 #include <chrono>
+#include <optional>
 
 #include "map_window/LiveMap.h"
 #include "simulated_drive/DriveLoop.h"
@@ -24,23 +26,28 @@ Eigen::AlignedBox2d around(const mrpt::math::TPose2D& pose, double meters);
  * the path, the driven track, and the robot. One picture is like the other in place and size. */
 class DrivePicture {
  public:
-  /** \param region of the world, m \param longerEdge of it, at least so many pixels */
-  DrivePicture(const Eigen::AlignedBox2d& region, int longerEdge)
-      : m_region(region), m_longerEdge(longerEdge) {}
+  /** \param region of the world, m \param longerEdge of it, at least so many pixels
+   * \param showsLeft shades over the map say what looking may still tell */
+  DrivePicture(const Eigen::AlignedBox2d& region, int longerEdge, bool showsLeft)
+      : m_region(region), m_longerEdge(longerEdge), m_showsLeft(showsLeft) {}
   /** Makes room for a drive's track, too: another place from here on. */
   void include(const DriveRecord& record);
 
-  map_pictures::MapCanvas draw(const DriveLoop& loop) const;
-  /** What looking may still tell, in shades over the map; with legend. */
-  cv::Mat whatIsLeft(DriveLoop& loop) const;
+  map_pictures::MapCanvas draw(DriveLoop& loop) const;
   /** The picture with title, scale and legend, all in places that stay from frame to frame. */
-  cv::Mat frame(const DriveLoop& loop) const;
+  /** Only what changed in the map since the last one is drawn anew; of what is left to see, what
+   * is near that. */
+  cv::Mat frame(DriveLoop& loop);
 
  private:
-  map_pictures::MapCanvas paperFor(double voxel) const;
+  map_pictures::MapCanvas drawMap(const Eigen::AlignedBox2d& part, DriveLoop& loop) const;
+  void follow(DriveLoop& loop);
 
   Eigen::AlignedBox2d m_region;  ///< m
   int m_longerEdge;
+  bool m_showsLeft;
+  std::optional<semantic_octree::MapFollower> m_changes;
+  std::optional<map_pictures::MapCanvas> m_map;  ///< as the last frame shows it
 };
 
 /** Adds the track of another drive. */

@@ -139,26 +139,30 @@ class Recorder : public DriveObserver {
   synthetic_rawlog::DriveLog m_log;
 };
 
-/** A picture of each second of the drive, and one of its end. */
+/** A picture of each second of the drive, and one of its end. Exploring takes long: its animation
+ * takes 20 s if it needs all of its time. */
 class Animation : public DriveObserver {
  public:
-  Animation(const DrivePicture& picture, const fs::path& file)
-      : m_picture(picture), m_gif(file, 0.12) {}
+  Animation(DrivePicture& picture, DriveLoop& loop, const fs::path& file)
+      : m_picture(picture),
+        m_loop(loop),
+        m_period(loop.explores() ? std::max(1.0, loop.config().timeLimit / 98) : 1),
+        m_gif(file, loop.explores() ? 0.2 : 0.12) {}
 
   void onSensed(const DriveLoop& loop, const std::vector<Observation>&) override {
     if (loop.time() < m_next - 1e-6) return;
-    m_next += 1;
-    shoot(loop);
+    m_next += m_period;
+    m_gif.add(m_picture.frame(m_loop));
   }
-  void onFinished(const DriveLoop& loop) override {
-    shoot(loop);
+  void onFinished(const DriveLoop&) override {
+    m_gif.add(m_picture.frame(m_loop));
     m_gif.close();
   }
 
  private:
-  void shoot(const DriveLoop& loop) { m_gif.add(m_picture.frame(loop)); }
-
-  const DrivePicture& m_picture;
+  DrivePicture& m_picture;
+  DriveLoop& m_loop;
+  double m_period;  ///< s
   map_pictures::GifFile m_gif;
   double m_next = 0;  ///< s
 };
@@ -189,8 +193,8 @@ class DriveProgram {
         m_weights(weightsOf(cli)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(regionOf(cli, m_scene.world), 960),
-        m_whole(regionOf(cli, m_scene.world), 1200) {
+        m_picture(regionOf(cli, m_scene.world), cli.explore ? 640 : 960, cli.explore),
+        m_whole(regionOf(cli, m_scene.world), 1200, false) {
     m_config.sensors.seed = cli.seed;
   }
 
@@ -239,7 +243,7 @@ class DriveProgram {
     }
     std::optional<Animation> animation;
     if (m_cli.pictures)
-      loop.addObserver(animation.emplace(m_picture, m_output.staged(name + ".gif")));
+      loop.addObserver(animation.emplace(m_picture, loop, m_output.staged(name + ".gif")));
     if (m_cli.live) {
       loop.keepOriginals();
       loop.addObserver(m_window.emplace(loop, m_scene.world, m_cli.start, goalOf(m_cli)));
@@ -252,13 +256,17 @@ class DriveProgram {
       semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
     m_whole.include(record);
     if (m_cli.explore && name == "drive")
-      map_pictures::savePicture(m_whole.whatIsLeft(loop), m_output.staged("left.png"));
+      save(DrivePicture(regionOf(m_cli, m_scene.world), 1200, true).draw(loop), "left.png");
     m_last = m_whole.draw(loop);
-    map_pictures::savePicture(map_pictures::withTitle(m_last->sheet(), caption(loop)),
-                              m_output.staged(name + ".png"));
+    save(*m_last, name + ".png");
     printSummary(record);
     if (!m_window) m_loop.reset();
     return record;
+  }
+
+  void save(const map_pictures::MapCanvas& canvas, const std::string& name) const {
+    map_pictures::savePicture(map_pictures::withTitle(canvas.sheet(), caption(*m_loop)),
+                              m_output.staged(name));
   }
 
   /** Nobody knows where it goes to look around. */

@@ -139,6 +139,8 @@ TEST(MapCanvas, drawingThroughMixesWithWhatIsThere) {
   c.drawThrough(0.25, [&] { c.fillSquare({0, 0}, 2, {200, 100, 40}); });
   EXPECT_EQ(pixelAt(c, 0, 0), cv::Vec3b(10, 25, 50));
   EXPECT_EQ(pixelAt(c, 1.5, 1.5), cv::Vec3b(0, 0, 0));
+  c.fillSquare({1.5, 1.5}, 0.5, {200, 100, 40}, 0.5);
+  EXPECT_EQ(pixelAt(c, 1.5, 1.5), cv::Vec3b(20, 50, 100));
 }
 
 TEST(MapCanvas, aMapLiesWhereItIsOnAnyRegion) {
@@ -189,6 +191,27 @@ TEST(MapCanvas, aMapAroundTheCanvasIsDrawnAsIfThereWereNoMore) {
   const auto contents = stored.folder()->contents();
   EXPECT_GT(contents.tiles, 8u);
   EXPECT_LE(contents.broughtIn, 2 * 2 * 8u);  // two drawings, two passes, two by two by two
+}
+
+TEST(MapCanvas, aPartThatIsPastedAfterAChangeMakesTheWholePicture) {
+  map_pictures::PictureStyle style;
+  style.maxHeight = 50, style.maxAboveGround = 2.5;
+  auto tree = paintedField({-5, -3});
+  MapCanvas kept = canvas();
+  kept.drawMapAround(tree, style);
+  semantic_types::LabeledCloud cloud;
+  for (float y = -0.5f; y < 0.6f; y += 0.1f)
+    for (float z = 0.1f; z < 4; z += 0.1f)
+      cloud.points.emplace_back(1.1f, y, z), cloud.classes.push_back(3);
+  tree.insert(cloud, Eigen::Isometry3d::Identity());
+  MapCanvas whole = canvas(), pasted = canvas(), part(region(-8, -8, 10, 7), {720, 600});
+  whole.drawMapAround(tree, style);
+  part.drawMapAround(tree, style);
+  EXPECT_GT(cv::norm(kept.picture(), whole.picture(), cv::NORM_INF), 50);
+  pasted.paste(kept, region(-10, -8, 10, 7));
+  EXPECT_EQ(cv::norm(kept.picture(), pasted.picture(), cv::NORM_INF), 0);
+  pasted.paste(part, region(-5, -7, 7, 7));
+  EXPECT_LE(cv::norm(whole.picture(), pasted.picture(), cv::NORM_INF), 1);
 }
 
 TEST(MapCanvas, theLegendStandsBesideThePictureAndNamesTheMapsClassesFirst) {

@@ -108,6 +108,7 @@ TEST(Words, withoutANearOneAllAreListed) {
   EXPECT_EQ(unknownWord("key", "threads", {"rays", "frame"}),
             "unknown key 'threads'; known are rays, frame");
   EXPECT_EQ(unknownWord("section", "map", {}), "unknown section 'map'; none is known");
+  EXPECT_EQ(strict_files::didYouMean("-q", {"-h", "--at"}), "") << "another letter";
 }
 
 TEST(Words, spaceAroundTextIsTrimmed) {

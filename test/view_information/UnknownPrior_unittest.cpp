@@ -104,6 +104,22 @@ TEST(UnknownPrior, knownGroundHidesWhatIsBelowIt) {
   EXPECT_EQ(known.at(kOrigin, kOrigin, kGroundKey).gain, 0);
 }
 
+TEST(UnknownPrior, whoLooksOnChangesNothingOfIt) {
+  TwoSides sides(kRoad);
+  LearnedPrior seen(sides.map, sides.question), alone(sides.map, sides.question);
+  for (const int x : {-400, 20, 400}) seen.lookAt((kOrigin + x) / 4, kOrigin / 4);
+  EXPECT_EQ(seen.memoryUsage(), alone.memoryUsage());
+  sides.teach(seen), sides.teach(alone);
+  for (const int x : {-400, 20, 400}) {
+    const int px = (kOrigin + x) / 4, py = kOrigin / 4;
+    const float looked = seen.lookAt(px, py).onGround.gain;
+    EXPECT_EQ(seen.patch(px, py).onGround.gain, alone.patch(px, py).onGround.gain) << x;
+    if (x != 20) {
+      EXPECT_EQ(looked, alone.patch(px, py).onGround.gain) << x;
+    }
+  }
+}
+
 TEST(UnknownPrior, groundThatChangesItsClassChangesWhatIsNear) {
   TwoSides sides(kRoad);
   LearnedPrior prior(sides.map, sides.question);

@@ -109,6 +109,8 @@ class DriveLoop {
   }
   bool explores() const { return m_explores; }
   double leftToSee(double x, double y) { return m_navigator.leftToSee(x, y); }
+  /** What changes in the map. */
+  semantic_octree::MapFollower follow() { return m_map->tree().follow(); }
   void keepOriginals() { m_sensors = SimulatedSensors(m_config.sensors, true); }
   const DriveRecord& run();
   /** To another goal, from where it is, with a new record: then run() again. */

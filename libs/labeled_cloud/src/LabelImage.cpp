@@ -157,7 +157,8 @@ std::string externalName(const CObservation& observation) {
     if (scan->rangeImage_isExternallyStored()) return scan->rangeImage_getExternalStorageFile("");
   }
   throw std::runtime_error("the observation '" + observation.sensorLabel +
-                           "' has no external image after which a label image could be named");
+                           "' has no external image after which a label image could be named; "
+                           "match = time needs none");
 }
 
 }  // namespace

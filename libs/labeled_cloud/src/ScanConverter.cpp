@@ -82,10 +82,9 @@ std::vector<std::size_t> choosePixels(const PointGrid& grid, int decimation) {
 
 void ScanConverterOptions::describe(strict_files::OptionList& list) {
   using strict_files::atLeast;
-  list.add(
-      "decimation", decimation, "pixels", atLeast(1),
-      "depth images: one point, the nearest, for a block of so many squared; 2 to 4 for VGA and "
-      "more");
+  list.add("decimation", decimation, "pixels", atLeast(1),
+           "depth images: one point, the nearest, for a square of so many; 2 to 4 for VGA and "
+           "more");
   list.add("flying_pixel_threshold", flyingPixelThreshold, "", atLeast(0).below(1),
            "depth images: leaves out pixels that hang in the air at depth edges, farther from both "
            "sides than this share of their depth (0.02); 0: keeps all");

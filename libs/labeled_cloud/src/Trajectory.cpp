@@ -14,6 +14,8 @@
 #include <chrono>
 #include <sstream>
 
+#include "PointLabels.h"
+
 namespace labeled_cloud {
 
 using mrpt::obs::CObservation;
@@ -282,14 +284,18 @@ bool ScanStream::isReady(const CObservation& observation) const {
 StreamedObservation ScanStream::take(const Waiting& waiting) {
   const CObservation& observation = *waiting.observation;
   StreamedObservation result;
-  result.name = m_rawlogs[m_file - 1].string() + ": observation " + std::to_string(waiting.number) +
-                " (" + observation.GetRuntimeClass()->className + " '" + observation.sensorLabel +
-                "')";
+  const std::string place =
+      m_rawlogs[m_file - 1].string() + ": observation " + std::to_string(waiting.number);
+  result.name = place + " (" + observation.GetRuntimeClass()->className + " '" +
+                observation.sensorLabel + "')";
   result.bytesRead = m_bytesBefore + (m_reader ? m_reader->bytesRead() : 0);
   try {
     use(observation, result);
   } catch (const std::exception& e) {
-    const std::string problem = result.name + ": " + strict_files::messageOf(e);
+    const std::string said = strict_files::messageOf(e), own = nameOf(observation);
+    const bool namesIt = said.rfind(own + ": ", 0) == 0;
+    const std::string problem =
+        namesIt ? place + " (" + own + ")" + said.substr(own.size()) : result.name + ": " + said;
     if (m_options.onProblem == ScanStreamOptions::OnProblem::Stop)
       throw std::runtime_error(problem);
     result.scan.reset();

@@ -75,7 +75,7 @@ cv::Mat unknownColumns(const SemanticOcTree& tree, const cv::Rect& columns, doub
 }
 
 /** Copies what fits. \param corner of the image in the picture */
-void paste(const cv::Mat& image, const cv::Point& corner, cv::Mat& picture) {
+void copyInto(const cv::Mat& image, const cv::Point& corner, cv::Mat& picture) {
   const cv::Rect seen = cv::Rect(corner, image.size()) & cv::Rect({0, 0}, picture.size());
   if (!seen.empty()) image(seen - corner).copyTo(picture(seen));
 }
@@ -153,19 +153,32 @@ void MapCanvas::drawCells(const MapCells& map, const SemanticOcTree& tree) {
   cv::Mat picture = highest.inRelief(tree.classes());
   const cv::Mat unknown = unknownColumns(tree, columns, edge);
   if (!unknown.empty()) picture.setTo(bgr(kUnknown), unknown);
-  paste(scaledBy(picture, m_pixelsPerMeter * edge),
-        nearestPixel(at(columns.x * edge, columns.br().y * edge)), m_picture);
+  copyInto(scaledBy(picture, m_pixelsPerMeter * edge),
+           nearestPixel(at(columns.x * edge, columns.br().y * edge)), m_picture);
   const auto legend = classLegend(tree.classes(), map.countClasses(tree.numClasses()));
   m_legend.insert(m_legend.begin(), legend.begin(), legend.end());
   if (highest.showsCoarseCells()) explain(coarseCellEntry());
   if (!unknown.empty()) explain({"not known", kUnknown});
 }
 
-void MapCanvas::fillSquare(const Eigen::Vector2d& center, double edge, const Color& color) {
-  const double half = edge / 2;
-  const cv::Rect square(nearestPixel(at(center.x() - half, center.y() + half)),
-                        nearestPixel(at(center.x() + half, center.y() - half)));
-  m_picture(square & cv::Rect({0, 0}, m_picture.size())).setTo(bgr(color));
+/** As far as they are in the picture. */
+cv::Rect MapCanvas::pixelsOf(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const {
+  return cv::Rect(nearestPixel(at(low.x(), high.y())), nearestPixel(at(high.x(), low.y()))) &
+         cv::Rect({0, 0}, m_picture.size());
+}
+
+void MapCanvas::paste(const MapCanvas& from, const Eigen::AlignedBox2d& part) {
+  const cv::Point shift = nearestPixel(from.at(0, 0)) - nearestPixel(at(0, 0));
+  const cv::Rect there = cv::Rect({0, 0}, from.m_picture.size()) - shift;
+  const cv::Rect seen = pixelsOf(part.min(), part.max()) & there;
+  if (!seen.empty()) from.m_picture(seen + shift).copyTo(m_picture(seen));
+}
+
+void MapCanvas::fillSquare(const Eigen::Vector2d& center, double edge, const Color& color,
+                           double share) {
+  cv::Mat part = m_picture(pixelsOf(center.array() - edge / 2, center.array() + edge / 2));
+  const cv::Mat filled(part.size(), part.type(), bgr(color));
+  cv::addWeighted(filled, share, part, 1 - share, 0, part);
 }
 
 void MapCanvas::drawLine(const std::vector<Eigen::Vector2d>& points, const Stroke& stroke) {

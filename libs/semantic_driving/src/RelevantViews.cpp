@@ -298,7 +298,7 @@ double RelevantViews::left(Column c) {
   constexpr int kBelow = 10;  // voxels
   constexpr int kEdge = UnknownPatch::kEdge;
   if (!m_learned) return 0;
-  const UnknownPatch& patch = m_learned->patch(c.x / kEdge, c.y / kEdge);
+  const UnknownPatch patch = m_learned->lookAt(c.x / kEdge, c.y / kEdge);
   double sum = 0;
   bool isBelowFree = false;
   for (int z = patch.top; z >= patch.ground - kBelow; --z) {

@@ -43,7 +43,7 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 /** The known word that is meant by an unknown one, or null. */
 const std::string* nearestOf(const std::string& word, const std::vector<std::string>& known) {
   const std::string* nearest = nullptr;
-  std::size_t least = 1 + word.size() / 2;  // farther is another word
+  std::size_t least = 1 + folded(word).size() / 2;  // farther is another word
   for (const std::string& candidate : known) {
     const std::size_t distance = editDistance(folded(word), folded(candidate));
     if (distance >= least) continue;

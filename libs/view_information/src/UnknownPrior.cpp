@@ -139,6 +139,14 @@ const UnknownPatch& LearnedPrior::patch(int x, int y) {
   return patch.prior;
 }
 
+UnknownPatch LearnedPrior::lookAt(int x, int y) const {
+  const auto block = m_blocks.find(keyOf(x / kBlock, y / kBlock));
+  const auto at = static_cast<std::size_t>(x % kBlock * kBlock + y % kBlock);
+  Patch patch = block == m_blocks.end() ? Patch() : (*block->second)[at];
+  if (patch.isStale) predict(x, y, patch);
+  return patch.prior;
+}
+
 LearnedPrior::Near LearnedPrior::near(int x, int y) const {
   Near near{Distribution(m_standsOn.size(), 0)};
   forNear(x, y, [&](const Patch& patch, std::size_t distance2) {

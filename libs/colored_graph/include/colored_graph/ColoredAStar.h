@@ -59,7 +59,7 @@ struct PathResult {
 
 /** COA*: the path from start to goal of the least cost vector.
  *
- * It is the first search of ColoredReplanner, which is A* over cost vectors, from the goal. Each
+ * The function is the first search of ColoredReplanner: A* over cost vectors, from the goal. Each
  * edge is evaluated at most once and most never are. Among paths of equal cost and as many edges,
  * it takes the smaller vertex id at each step from the start. \param graph keeps the profiles of
  * the edges that were evaluated. \throw std::invalid_argument model invalid, an unevaluated edge

@@ -10,13 +10,13 @@ class GraphSearch {
  public:
   virtual ~GraphSearch() = default;
 
-  /** The best path in a graph that was not searched before. It keeps nothing of it, but for the
-   * profiles of the edges that it evaluates, which the graph keeps. */
+  /** The best path in a graph that was not searched before. The search remembers nothing; the graph
+   * keeps the profiles of the edges that were evaluated. */
   virtual PathResult search(ColoredGraph& graph, VertexId start, VertexId goal,
                             const CostModel& model, const SearchOptions& options) = 0;
-  /** The same, of a graph that changes between calls (ColoredGraph's change log tells how), with a
-   * start that moves. It may keep what it found for the next call: forget() comes before the graph
-   * goes. */
+  /** The best path in a graph that changes between calls (ColoredGraph's change log tells how),
+   * from a start that moves. The search may keep what it found for the next call: forget() comes
+   * before the graph goes. */
   virtual PathResult replan(ColoredGraph& graph, VertexId start, VertexId goal,
                             const CostModel& model, const SearchOptions& options) {
     return search(graph, start, goal, model, options);

@@ -30,7 +30,7 @@ struct CameraDescription {
 
   std::optional<double> cols, rows, fx, fy, cx, cy;  ///< pixels
   Distortion distortion = Distortion::PlumbBob;
-  /** Its coefficients in MRPT's order, separated by spaces. */
+  /** The distortion's coefficients in MRPT's order, separated by spaces. */
   std::string dist;
   std::optional<double> x, y, z;           ///< of the optical frame in the robot's, m
   std::optional<double> yaw, pitch, roll;  ///< degrees

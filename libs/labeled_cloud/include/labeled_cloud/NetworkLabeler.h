@@ -14,8 +14,8 @@ struct NetworkOptions {
   enum class Fit {
     /** The picture is stretched to the input's size. */
     Stretch,
-    /** It is scaled to the input's width. If it is then higher than the input, its top rows are cut
-     * off; if lower, its last row is repeated below. */
+    /** The picture is scaled to the input's width. If it is then higher than the input, its top
+     * rows are cut off; if lower, its last row is repeated below. */
     Width
   };
   enum class Channels { Rgb, Bgr };

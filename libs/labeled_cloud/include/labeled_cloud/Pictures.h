@@ -28,7 +28,7 @@ enum class ImageKinds {
 cv::Mat readImageFile(const std::filesystem::path& file, ImageKinds kinds);
 
 /** What readImageFile() looks at before it reads the pixels, for those who have others read them.
- * \throw std::runtime_error as above. */
+ * \throw std::runtime_error as readImageFile(). */
 void checkImageFile(const std::filesystem::path& file, ImageKinds kinds);
 
 /** A color (or gray) image of an observation, with the camera that took it. */

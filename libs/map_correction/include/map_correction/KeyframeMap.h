@@ -69,7 +69,7 @@ class KeyframeMap {
    * \throw std::out_of_range no such keyframe. */
   CorrectionReport remove(KeyframeId keyframe);
 
-  /** Those that began, also those that were removed. */
+  /** Keyframes that began, also those that were removed. */
   std::size_t numKeyframes() const;
   std::size_t numScans() const;
   /** \throw std::out_of_range no such keyframe. */

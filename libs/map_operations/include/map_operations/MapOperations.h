@@ -91,15 +91,16 @@ std::unique_ptr<octomap::OcTree> toOcTree(const SemanticOcTree& map);
  * their children; free leaves have no color. */
 std::unique_ptr<octomap::ColorOcTree> toColorOcTree(const SemanticOcTree& map);
 
-// Their files. OctoMap's own functions print what they do.
+// Files of OctoMap's trees. OctoMap's own functions print what they do.
 
 /** Writes an .ot file that holds a ColorOcTree; comments in its header, "# class R G B NAME", say
  * what the colors mean. \throw std::runtime_error the stream does not take it. */
 void writeColorOcTree(std::ostream& out, const SemanticOcTree& map);
-/** Writes an .ot file that holds an OcTree. \throw std::runtime_error as above. */
+/** Writes an .ot file that holds an OcTree. \throw std::runtime_error the stream does not take it.
+ */
 void writeOcTree(std::ostream& out, const SemanticOcTree& map);
 /** Writes a .bt file: whether a leaf is free or occupied is all that it keeps.
- * \throw std::runtime_error as above. */
+ * \throw std::runtime_error the stream does not take it. */
 void writeBinaryOcTree(std::ostream& out, const SemanticOcTree& map);
 
 /** Occupancy, put into the filter's limits; no voxel has a class.
@@ -107,7 +108,8 @@ void writeBinaryOcTree(std::ostream& out, const SemanticOcTree& map);
 SemanticOcTree fromOcTree(const octomap::OcTree& map, const ClassTable& classes,
                           const FilterParameters& filter = {});
 /** An occupied leaf in exactly the color of a class is one in which a label of that class was seen;
- * its occupancy ends at the filter's limit for a class. \throw std::invalid_argument as above. */
+ * its occupancy ends at the filter's limit for a class.
+ * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */
 SemanticOcTree fromOcTree(const octomap::ColorOcTree& map, const ClassTable& classes,
                           const FilterParameters& filter = {});
 

@@ -135,11 +135,15 @@ class MapCanvas {
    * is gray. Its classes are the first entries of the legend. \param style its heights and
    * occupancy \throw std::invalid_argument as PictureStyle::validate(). */
   void drawMap(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
-  /** The same, of what lies on the canvas or up to 5 m beside it: as fine as that can be drawn, and
-   * cut off as if there were no more. The rest of a large map is not looked at. */
+  /** Draws what of a map lies on the canvas or up to 5 m beside it, otherwise as drawMap(): as fine
+   * as this part can be drawn, and cut off as if there were no more. The rest of a large map is not
+   * looked at. */
   void drawMapAround(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
-  /** A square with sides along the axes. \param edge m */
-  void fillSquare(const Eigen::Vector2d& center, double edge, const Color& color);
+  /** Copies what a canvas of the same scale shows of a part, m. The legend stays. */
+  void paste(const MapCanvas& from, const Eigen::AlignedBox2d& part);
+  /** A square with sides along the axes. \param edge m \param share (0 to 1) of the color; the rest
+   * is what was there */
+  void fillSquare(const Eigen::Vector2d& center, double edge, const Color& color, double share = 1);
   void drawLine(const std::vector<Eigen::Vector2d>& points, const Stroke& stroke);
   void drawPose(const mrpt::math::TPose2D& pose, const Arrow& arrow);
   /** A closed outline, such as a vehicle's footprint, filled. */
@@ -155,7 +159,7 @@ class MapCanvas {
   const cv::Mat& picture() const { return m_picture; }
   /** With the axes and a scale bar in its emptiest corners; empty paper stays as it is. */
   cv::Mat withScale() const;
-  /** With these, and with the legend beside it. */
+  /** The picture with axes and scale bar, and with the legend beside it. */
   cv::Mat sheet(const std::string& title = {}) const {
     return withLegend(withScale(), title, m_legend);
   }
@@ -163,6 +167,7 @@ class MapCanvas {
  private:
   MapCanvas() = default;
   void drawCells(const MapCells& map, const semantic_octree::SemanticOcTree& tree);
+  cv::Rect pixelsOf(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const;
 
   Eigen::AlignedBox2d m_region;
   double m_pixelsPerMeter = 0;

@@ -45,10 +45,11 @@ struct Datagram {
 struct StreamPrefix {
   std::size_t packets = 0;
   std::size_t bytes = 0;  ///< of all datagrams up to its end
-  /** Its tree is the compressed one of this alpha: there, the largest J belongs to it. None: blocks
-   * are missing, or it ends within what belongs together. */
+  /** The prefix's tree is the compressed one of this alpha: there, the largest J belongs to it.
+   * None: blocks are missing, or the prefix ends within what belongs together. */
   std::optional<double> alpha;
-  /** And it is the smallest such tree, as Abstraction has it: all that goes with it is there. */
+  /** The tree is the smallest of this alpha, as Abstraction has it: all that goes with it is there.
+   */
   bool isWhole = false;
 };
 

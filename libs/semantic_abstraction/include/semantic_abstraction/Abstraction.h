@@ -34,7 +34,7 @@ struct LeafCell : Cube {
 struct AbstractionMeasures {
   tree_abstraction::TreeMeasures full, compressed;
   /** J of the compressed tree: sum_t weight_t I_t - alpha I_X, counted from the roots of the blocks
-   * where the frame above them is free (nats). */
+   * where the nodes above them are free (nats). */
   double objective = 0;
 
   /** Share of a term's information that the compressed tree keeps; none where there is none to keep
@@ -63,7 +63,7 @@ struct TreeChange {
 /** A map keeps the class mixtures and G-values of inner nodes from now on: insert() updates them in
  * the same pass. \throw std::invalid_argument as AbstractionOptions::forClasses(). */
 void setAbstraction(SemanticOcTree& map, const AbstractionOptions& options);
-/** It keeps them no longer. */
+/** A map keeps class mixtures and G-values no longer. */
 void dropAbstraction(SemanticOcTree& map);
 bool hasAbstraction(const SemanticOcTree& map);
 
@@ -81,8 +81,8 @@ class Abstraction {
 
   /** Without names: see AbstractionOptions::forClasses(). */
   const AbstractionOptions& options() const;
-  /** Depth of the cubes from which on nodes have their price: of the blocks where the frame above
-   * them is free, otherwise 0. */
+  /** Depth of the cubes from which on nodes have their price: of the blocks where the nodes above
+   * them are free, otherwise 0. */
   int rootDepth() const;
   /** Whether the compressed tree expands a node, if it does those above. */
   bool isExpanded(const SemanticOcTreeNode& node) const;
@@ -129,14 +129,14 @@ class Abstraction {
     AddedToTree added;  ///< by expanding it
     double tau;         ///< see tree_abstraction::collapseAlphas()
   };
-  /** Calls visit(node) for all nodes that are not in the free frame, depth first; keeps some
+  /** Calls visit(node) for all nodes but the free ones above the blocks, depth first; keeps some
    * 262,144 of them in memory, or those below one root if that are more.
-   * \return what the free frame above them adds to a single leaf */
+   * \return what the free nodes above the blocks add to a single leaf */
   AddedToTree forEachTau(const std::function<void(const NodeTau&)>& visit) const;
 
   /** An inner node as the compressed trees of all weights and alphas see it. */
   struct PathNode : Cube {
-    bool isFree;      ///< in the free frame: expanded by every tree
+    bool isFree;      ///< above the blocks: expanded by every tree
     bool isExpanded;  ///< in the compressed tree
     double share;     ///< p(n)
     double price;     ///< what expanding it costs, p(n) H(Pi): nats for each unit of alpha

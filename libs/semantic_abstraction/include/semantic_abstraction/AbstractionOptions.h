@@ -77,11 +77,11 @@ struct AbstractionOptions {
    * \throw std::invalid_argument no such class, one twice, or two terms of one name. */
   void add(const semantic_types::ClassTable& classes, const std::string& term,
            const std::vector<std::string>& members, double weight);
-  /** The same without names and texts, in `weights` and `regions` alone.
+  /** These options without names and texts, in `weights` and `regions` alone.
    * \throw std::invalid_argument naming the option and its value, or a class that is both relevant
    * and irrelevant. */
   AbstractionOptions forClasses(const semantic_types::ClassTable& classes) const;
-  /** What files can say: all but the frame, and `weights.terms` and `regions`. */
+  /** What files can say: all but `frame`, and `weights.terms` and `regions`. */
   void describe(strict_files::OptionList& list);
   /** Checks all but what depends on the classes. \throw std::invalid_argument */
   void validate() const;

@@ -27,7 +27,7 @@ struct ExploreOptions {
   double budget = std::numeric_limits<double>::infinity();  ///< meters that it drives at most
   /** Where views may be, map frame, meters; empty: everywhere. */
   Eigen::AlignedBox2d area;
-  /** It is enough when what is left within reach is expected to tell less than this share of all
+  /** Exploring ends when what is left within reach is expected to tell less than this share of all
    * that is known and left: as much as the last stretch of the way that promised as much. */
   double leftShare = 0.03;
 

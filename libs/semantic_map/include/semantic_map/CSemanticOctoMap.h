@@ -172,7 +172,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
                            const mrpt::maps::TMatchingParams& params,
                            mrpt::maps::TMatchingExtraResults& extra) const override;
   /** Share of the other's points with an occupied voxel's center within params.maxDistForCorr.
-   * \throw std::invalid_argument as above. */
+   * \throw std::invalid_argument as determineMatching2D(). */
   float compute3DMatchingRatio(const mrpt::maps::CMetricMap* other,
                                const mrpt::poses::CPose3D& T_this_other,
                                const mrpt::maps::TMatchingRatioParams& params) const override;

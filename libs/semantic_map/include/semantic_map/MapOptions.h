@@ -71,8 +71,8 @@ struct TInsertionOptions : public TNamedOptions<TInsertionOptions> {
   /** See ObservationClock, seconds. */
   double maxGap = 60;
   labeled_cloud::ScanConverterOptions conversion;
-  /** They can change only while the map is empty; otherwise it refuses observations until they are
-   * again its own. */
+  /** The filter can change only while the map is empty; otherwise the map refuses observations
+   * until the filter is again its own. */
   semantic_octree::FilterParameters filter;
 
   void describe(strict_files::OptionList& list);

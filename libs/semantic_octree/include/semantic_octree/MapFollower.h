@@ -10,7 +10,7 @@ class SemanticOcTree;
 
 /** Tiles of 8 x 8 x 8 voxels that changed. */
 struct TileChange {
-  /** These are all tiles that are known in part. What the reader knew before does not count. */
+  /** `tiles` are all that are known in part. What the reader knew before does not count. */
   bool all = false;
   std::vector<octomap::OcTreeKey> tiles;  ///< lowest key of each, multiples of 8, sorted
 };
@@ -27,10 +27,9 @@ struct TileChange {
  * folder, a map that was filled), and after it has fallen behind: a map keeps at most 2^20 changes,
  * 8 bytes each, and nothing of what nobody has looked at yet.
  *
- * It follows the object, wherever its content comes from; copies of a map have no readers. Not
- * thread safe: the map must not change during a call.
- * \throw std::logic_error in all functions: the map is gone, or broken
- * (SemanticOcTree::isBroken()). */
+ * A reader follows the object, wherever its content comes from; copies of a map have no readers.
+ * Not thread safe: the map must not change during a call. \throw std::logic_error in all functions:
+ * the map is gone, or broken (SemanticOcTree::isBroken()). */
 class MapFollower {
  public:
   ~MapFollower();
@@ -39,7 +38,7 @@ class MapFollower {
 
   /** Tiles that changed since the last call; some may be what they were. */
   TileChange tiles();
-  /** The same, for who knows the map as it is: nothing is told, and none of its nodes visited. */
+  /** For who knows the map as it is: what changed until now is not told, and no node visited. */
   void skipTiles();
 
  private:

@@ -35,7 +35,7 @@ struct CellState {
   /** Class with the largest probability, lowest id on a tie; kNoClass (which ClassTable::name()
    * calls "no class") in free and unknown space and where no return had a label. */
   ClassId likeliestClass = kNoClass;
-  /** Its probability p(class), among free space and all classes. */
+  /** p(likeliestClass), among free space and all classes. */
   double probability = 0;
 };
 
@@ -147,7 +147,8 @@ class SemanticOcTree {
   /** The class record of a leaf, which the filter made of scans; for a leaf without one, classes
    * that are equally likely. */
   Belief belief(const Node& leaf) const;
-  /** What is stated of it (see Calibration), here and in query() and distribution(). */
+  /** What is stated of a leaf's classes (see Calibration), here and in query() and distribution().
+   */
   Belief statedBelief(const Node& leaf) const { return m_filter.stated(belief(leaf)); }
   /** K + 1 probabilities, [0] = free space: a leaf's distribution, or the mixture of the known
    * leaves below an inner node weighted by volume. */
@@ -164,7 +165,8 @@ class SemanticOcTree {
   bool operator==(const SemanticOcTree& o) const;
   bool operator!=(const SemanticOcTree& o) const { return !(*this == o); }
 
-  /** It is in a folder of tiles that was opened to be read (MapFolder): it will not change. */
+  /** Whether the map is in a folder of tiles that was opened to be read (MapFolder): it will not
+   * change. */
   bool isReadOnly() const;
 
   // --- Changing ---
@@ -185,17 +187,17 @@ class SemanticOcTree {
    * \throw std::invalid_argument not 0 to 1e9 seconds \throw std::out_of_range more than 200 years
    * in all \throw std::bad_alloc no memory; look at isBroken(). */
   void age(double seconds);
-  /** Seconds by which it has aged; files keep it. */
+  /** Seconds by which the map has aged; files keep them. */
   double clock() const { return static_cast<double>(m_clock) * 1e-9; }
-  /** Classes take the half-lives that a table has for their names; free space, too. Classes that it
-   * does not have keep theirs. */
+  /** Classes take the half-lives that a table has for their names; free space, too. Classes that
+   * the table does not have keep theirs. */
   void setHalfLives(const ClassTable& table);
   /** Beliefs stay as they are. \throw std::invalid_argument naming the value. */
   void setCalibration(const Calibration& calibration);
   /** For soft labels to come: FilterParameters::classPrior.
    * \throw std::invalid_argument naming the value. */
   void setClassPrior(std::vector<float> prior);
-  /** Memory ran out, or a tile's file failed (MapFolder), while it changed. */
+  /** Memory ran out, or a tile's file failed (MapFolder), while the map changed. */
   bool isBroken() const { return m_store == nullptr; }
   /** Removes all nodes; the clock begins anew.
    * \throw std::logic_error (whatever changes the map) isReadOnly() */
@@ -230,8 +232,8 @@ class SemanticOcTree {
 
 /** A map stays as it is while this lives: whoever would change it in another thread gets
  * std::logic_error instead, and the map is as it was. SemanticPlanner holds one whenever it looks.
- * It waits for nobody: who inserts and reads in two threads takes turns by a mutex of their own, or
- * has a semantic_navigation::Navigator do it. */
+ * The lock waits for nobody: who inserts and reads in two threads takes turns by a mutex of their
+ * own, or has a semantic_navigation::Navigator do it. */
 class ReadLock {
  public:
   /** \param map must outlive this \throw std::logic_error another thread changes it now. */

@@ -43,13 +43,15 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
   const strict_files::ClassicNumbers classic(reason);
   const auto rounded = [](double m) { return std::round(100 * m) / 100; };
   reason << "the " << what << " (" << rounded(pose.x) << ", " << rounded(pose.y) << ") is "
-         << (status == PlanStatus::StartOffGround ? "off the ground"
-             : status == PlanStatus::StartBlocked ? "blocked"
-                                                  : "on forbidden ground")
-         << std::fixed << std::setprecision(1) << ": (" << refusal.place.x << ", "
-         << refusal.place.y << "), "
-         << std::hypot(refusal.place.x - pose.x, refusal.place.y - pose.y) << " m from the " << what
-         << ": " << refusal.what;
+         << (status == PlanStatus::StartOffGround ? "off the ground: "
+             : status == PlanStatus::StartBlocked ? "blocked: "
+                                                  : "on forbidden ground: ");
+  if (status != PlanStatus::StartOffGround)
+    reason << std::fixed << std::setprecision(1) << '(' << refusal.place.x << ", "
+           << refusal.place.y << "), "
+           << std::hypot(refusal.place.x - pose.x, refusal.place.y - pose.y) << " m from the "
+           << what << ": ";
+  reason << refusal.what;
   return reason.str();
 }
 
@@ -99,7 +101,8 @@ void PlannerCore::checkFinite(const char* what, const Place& place) {
 
 void PlannerCore::checkWhole() const {
   if (m_broken)
-    throw std::logic_error("SemanticPlanner: it is broken, for a call failed while it changed it");
+    throw std::logic_error(
+        "SemanticPlanner: it is broken, for a call failed while it changed it; make a new one");
 }
 
 const Ground& PlannerCore::ground() const {

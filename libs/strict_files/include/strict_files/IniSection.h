@@ -59,7 +59,7 @@ IniSection readOptions(const Source& source, const std::string& section, const O
   return ini;
 }
 
-/** The same for the options of a struct, which are checked, too. */
+/** Reads a section into the options of a struct, and checks them. */
 template <class Source, class Options>
 void readSection(const Source& source, const std::string& section, Options& options) {
   const IniSection ini = readOptions(source, section, OptionList::of(options));

@@ -66,7 +66,7 @@ struct Option {
  * each other: that is for the struct's validate(), which begins with checkOptions(). */
 class OptionList {
  public:
-  /** Those of structs that describe themselves. */
+  /** The options of structs that describe themselves. */
   template <class... Structs>
   static OptionList of(Structs&... structs) {
     OptionList list;

@@ -70,7 +70,7 @@ struct CameraOptions {
   Eigen::Vector3d ray(double row, double column) const {
     return {1, (cx() - column) / focalLength(), (cy() - row) / focalLength()};
   }
-  /** Its own, without the noise, which sensors may share. */
+  /** The options of this sensor, without the noise, which sensors may share. */
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field. */
   void validate() const;
@@ -100,7 +100,7 @@ struct LidarOptions {
 
   /** Unit vector of a beam, sensor frame; ring 0 is the highest, column 0 looks ahead. */
   Eigen::Vector3d beam(int ring, int column) const;
-  /** Its own, without the noise, which sensors may share. */
+  /** The options of this sensor, without the noise, which sensors may share. */
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the field. */
   void validate() const;

@@ -40,7 +40,7 @@ enum Class : ClassId {
 };
 constexpr int kClassCount = kPerson;
 
-/** Their names and the colors in which maps show them. */
+/** The names of the classes, and the colors in which maps show them. */
 const ClassTable& classTable();
 
 /** What such things look like to a color camera. */

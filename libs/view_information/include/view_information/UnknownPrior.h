@@ -84,6 +84,8 @@ class LearnedPrior : public UnknownPrior {
    */
   void learn(int x, int y, int z, ClassId ground);
   const UnknownPatch& patch(int x, int y) override;
+  /** The prior of a patch for who only looks on: nothing is remembered. */
+  UnknownPatch lookAt(int x, int y) const;
   bool knowsAir() const override { return true; }
   /** Bytes. */
   std::size_t memoryUsage() const;
