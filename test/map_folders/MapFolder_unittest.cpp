@@ -107,27 +107,22 @@ TEST(MapFolder, staysWithinItsBudgetButForAScan) {
 namespace {
 
 /** Sees the most memory that a map has, also while a tile comes in. */
-class Watcher final : public NodeObserver {
+class Watcher final : public NodeObserver, public NodeObserver::Worker {
  public:
-  explicit Watcher(std::size_t& most) : m_worker(most) {}
+  explicit Watcher(std::size_t& most) : m_most(most) {}
   std::size_t stateBytes() const override { return 8; }
-  Worker& worker(int) override { return m_worker; }
+  NodeObserver::Worker& worker(int) override { return *this; }
   bool sameState(const NodeStore&, const Slot&, const NodeStore&, const Slot&) const override {
     return true;
   }
   void tellAll() override {}
-  std::unique_ptr<NodeObserver> clone() const override {
-    return std::make_unique<Watcher>(m_worker.most);
+  std::unique_ptr<NodeObserver> clone() const override { return std::make_unique<Watcher>(m_most); }
+  void recompute(NodeStore& store, Slot&, const Cube&, bool) override {
+    m_most = std::max(m_most, store.bytes());
   }
 
  private:
-  struct Watching final : Worker {
-    explicit Watching(std::size_t& m) : most(m) {}
-    void recompute(NodeStore& store, Slot&, const Cube&, bool) override {
-      most = std::max(most, store.bytes());
-    }
-    std::size_t& most;
-  } m_worker;
+  std::size_t& m_most;
 };
 
 }  // namespace
