@@ -3,6 +3,7 @@
 #include <map_operations/MapOperations.h>
 #include <semantic_abstraction/AlphaTrees.h>
 #include <semantic_octree/MapFollower.h>
+#include <semantic_octree/store/MapAccess.h>
 
 #include <functional>
 
@@ -101,6 +102,48 @@ TEST(MapFolder, staysWithinItsBudgetButForAScan) {
   EXPECT_GT(least, 0u);
   EXPECT_LT(least, tiles.contents().tiles);
   EXPECT_TRUE(map.query(100, 100, 100).status == CellState::Status::Unknown);
+}
+
+namespace {
+
+/** Sees the most memory that a map has, also while a tile comes in. */
+class Watcher final : public NodeObserver, public NodeObserver::Worker {
+ public:
+  explicit Watcher(std::size_t& most) : m_most(most) {}
+  std::size_t stateBytes() const override { return 8; }
+  NodeObserver::Worker& worker(int) override { return *this; }
+  bool sameState(const NodeStore&, const Slot&, const NodeStore&, const Slot&) const override {
+    return true;
+  }
+  void tellAll() override {}
+  std::unique_ptr<NodeObserver> clone() const override { return std::make_unique<Watcher>(m_most); }
+  void recompute(NodeStore& store, Slot&, const Cube&, bool) override {
+    m_most = std::max(m_most, store.bytes());
+  }
+
+ private:
+  std::size_t& m_most;
+};
+
+}  // namespace
+
+TEST(MapFolder, hasRoomBeforeATileComes) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(4, 6));
+  SemanticOcTree map = emptyMap();
+  MapFolderOptions options = tight();
+  options.memory = 0;
+  const MapFolder tiles(map, folder / "map", kRead, options);
+  std::size_t most = 0, largest = 0;
+  MapAccess::setObserver(map, std::make_unique<Watcher>(most));
+  most = 0;
+  for (const auto& file : tileFiles(folder / "map")) {
+    const Eigen::Vector3d center = 6.4 * (placeOf(file).array() + 0.5);
+    map.query(center.x(), center.y(), center.z());
+    largest = std::max(largest, map.memoryUsage());
+  }
+  EXPECT_GT(most, 0u);
+  EXPECT_LE(most, largest);
 }
 
 TEST(MapFolder, keepsWhatWasUsedLast) {

@@ -120,8 +120,14 @@ NodeArena& TilesOnDisk::arenaWith(bool most) {
 
 void TilesOnDisk::bring(Slot& away) {
   Tile& tile = m_tiles.at(codeOfAway(store().octant(away)));
-  fetch(away, tile);
   tile.used = ++m_clock;
+  fetchIntoBudget(away, tile);
+}
+
+void TilesOnDisk::fetchIntoBudget(Slot& slot, Tile& tile) {
+  // Others go before it comes: what they took is for it.
+  makeRoom(m_clock, m_place.budget - std::min(m_place.budget, store().expectedBytes(tile.nodes)));
+  fetch(slot, tile);
   makeRoom(m_clock, m_place.budget);
 }
 
@@ -187,9 +193,7 @@ void TilesOnDisk::prepare(const Scan& scan) {
   makeRoom(m_clock, m_place.budget);
   for (const VoxelIndex& cube : cubes) {
     Tile& tile = m_tiles.at(tileCode(cube));
-    if (!tile.isAway) continue;
-    fetch(*slotOf(tile), tile);
-    makeRoom(m_clock, m_place.budget);
+    if (tile.isAway) fetchIntoBudget(*slotOf(tile), tile);
   }
   for (const VoxelIndex& cube : cubes) m_tiles.at(tileCode(cube)).isDirty = true;
 }

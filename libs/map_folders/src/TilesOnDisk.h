@@ -68,6 +68,7 @@ class TilesOnDisk : public TileSource {
   /** Null: it is no inner node (any more). */
   Slot* slotOf(const Tile& tile) const;
   void fetch(Slot& slot, Tile& tile);
+  void fetchIntoBudget(Slot& slot, Tile& tile);
   void read(Slot& slot, const Tile& tile);
   void send(Slot& slot, Tile& tile);
   void removeChildren(NodeArena& arena, const Slot& octant);

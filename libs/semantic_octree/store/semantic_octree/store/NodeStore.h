@@ -221,6 +221,11 @@ class NodeStore {
 
   /** Bytes of nodes, records and bookkeeping in use; what is set aside for more is not counted. */
   std::size_t bytes() const;
+  /** Those of so many nodes, if they take as much as those that are in memory. */
+  std::size_t expectedBytes(long nodes) const {
+    return bytes() / (numNodes() - static_cast<std::size_t>(m_awayNodes) + 1) *
+           static_cast<std::size_t>(nodes);
+  }
   /** Nodes including the root, and those that are away. */
   std::size_t numNodes() const;
   std::size_t numInnerNodes() const;
