@@ -11,9 +11,6 @@ namespace semantic_slam {
 
 /** Share of a stretch's points where the place that it is compared with has some, at least. */
 constexpr double kCovered = 0.3;
-/** Share of the highest score of a place that is found. Right places have .7 to .9, wrong ones up
- * to .7. */
-constexpr double kFoundScore = 0.65;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);
 /** x, y (m) and heading (radians). */

@@ -21,8 +21,9 @@ constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngl
 /** Without registration the robot may be off as after so many times the way more. */
 constexpr double kLostMore = 9;
 constexpr std::size_t kMostPlaces = 3;
-/** Share of the highest score where poses are right already, by the first window. */
-constexpr double kLeastScore = 0.5;
+/** Share of the highest score where poses are right already, by the first window; and where they
+ * would move: what goes on into a corridor that nobody saw fits wrong places up to .7. */
+constexpr double kLeastScore = 0.5, kMovingScore = 0.75;
 /** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
  */
 constexpr double kAgree = 0.2, kAgreeWay = 0.03, kAgreeAngle = 2 * kDegree,
@@ -154,9 +155,9 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
                          .find(upright(level.cloud), guess, window, kLeastScore);
   if (!found) return std::nullopt;
   const double off = (found->pose - guess).head<2>().norm();
-  if (found->score < kFoundScore && off > kWindow * m_scale.gridCell) return std::nullopt;
+  if (found->score < kMovingScore && off > kWindow * m_scale.gridCell) return std::nullopt;
   if (!found->isAlone) {
-    ++m_report.open;
+    m_report.open += way > m_scale.loopLength;  // no loop leads there yet
     return std::nullopt;
   }
   Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));

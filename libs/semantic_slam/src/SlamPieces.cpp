@@ -9,6 +9,9 @@ namespace {
 /** Share of a stretch's points after a loss that fit what was seen before it. Stretches that follow
  * each other have .6 to 1 (1 in 20 less than .7), places that do not .1 to .6. */
 constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
+/** Share of the highest score of a place that is searched everywhere. Right places have .7 to .9,
+ * wrong ones up to .7. */
+constexpr double kFoundScore = 0.65;
 /** A piece is searched when it is so long, m, and each time that it grew by the factor; first when
  * twice as long for each of the last pieces that was not found, of so many. */
 constexpr double kFirstLook = 4, kNextLook = 1.4;
