@@ -100,7 +100,13 @@ class Log {
       addLaser(words, words.kind[1] == 'O');
     }
   }
-  Summary finish() { return m_output.finish(); }
+  Summary finish(const fs::path& file) {
+    if (m_frame == 0)
+      throw std::runtime_error(file.string() +
+                               ": no line FLASER, RLASER, RAWLASER1 or ROBOTLASER1: is it a log of "
+                               "CARMEN's?");
+    return m_output.finish();
+  }
 
  private:
   static bool isNumbered(const std::string& kind, const std::string& name) {
@@ -217,7 +223,7 @@ class Log {
 Summary convertCarmen(const fs::path& file, const Conversion& conversion) {
   Log log(conversion);
   for (const TextLine& line : strict_files::readLines(file)) log.add(line);
-  return log.finish();
+  return log.finish(file);
 }
 
 }  // namespace dataset2rawlog

@@ -206,5 +206,5 @@ TEST(Carmen, badLinesAreNamed) {
 }
 
 TEST(Carmen, aLogWithoutScansMakesNoRawlog) {
-  EXPECT_TRUE(contains(messageOf("ODOM 1 2 3 0 0 0 1 host 0\n"), "no frame was selected"));
+  EXPECT_TRUE(contains(messageOf("ODOM 1 2 3 0 0 0 1 host 0\n"), "a.log: no line FLASER, RLASER"));
 }
