@@ -67,6 +67,14 @@ void append(Recording& r, const Recording& part, std::size_t from, std::size_t t
 
 }  // namespace
 
+TEST(Planar, loopsThatTwoPlacesFitAreTold) {
+  SlamReport report;
+  EXPECT_TRUE(report.warnings().empty());
+  report.open = 3;
+  ASSERT_EQ(report.warnings().size(), 1u);
+  EXPECT_TRUE(contains(report.warnings()[0], "in either of two places, by 3 of its looks"));
+}
+
 TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {
   Submap submap(1, false, true);
   submap.add(wall(0.3f), Eigen::Isometry3d::Identity());

@@ -151,6 +151,16 @@ TEST(PlaneSearch, givesUpWhereMuchIsAlike) {
   EXPECT_FALSE(PlaneSearch(bushes, kCell).find(scan, {0, 0, 0}, kEverywhere, 0.65));
 }
 
+TEST(PlaneSearch, takesNoPlaceForTheOnlyOneWhereMillionsFit) {
+  PlanePoints full;
+  for (int x = -200; x < 200; ++x)
+    for (int y = -200; y < 200; ++y) full.emplace_back(kCell * (x + 0.5), kCell * (y + 0.5));
+  const PlanePoints scan{{0, 0}, {1, 0}, {0, 1}};
+  const auto found = PlaneSearch(full, kCell).find(scan, {0, 0, 0}, {15, M_PI}, 0.65);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->isAlone);
+}
+
 namespace {
 
 /** A corridor of 16 m with a door each so many m; without: 0. */

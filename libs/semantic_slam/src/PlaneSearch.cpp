@@ -18,6 +18,8 @@ constexpr int kReach = 3;
 /** Points that one search looks up at most, beside those at the coarsest level: where much is alike
  * (trees, cars) and nothing fits, bounds exclude next to nothing. */
 constexpr std::size_t kMostLooks = 300'000'000;
+/** Places that are remembered at most, where many around the best fit as well. */
+constexpr std::size_t kMostAround = 1'000'000;
 /** A column of a cloud reaches from low to high if it is so many cells high. */
 constexpr float kUpright = 3;
 /** Scores that differ by less than so many standard deviations of their difference are alike. */
@@ -152,10 +154,12 @@ class PlaneSearch::Search {
     return best;
   }
   /** Another place is one that paths lead to from the best only through places that fit worse. A
-   * corridor without doors is one place. */
+   * corridor without doors is one place. Where that takes too long to find out, there is another.
+   */
   bool isAlone(const Candidate& place) const {
     const int least = place.score - noiseOf(place) - 1;
-    return best(least, around(place, least)).level == kNone;
+    const auto known = around(place, least);
+    return known && best(least, *known).level == kNone;
   }
   Eigen::Vector3d offsetOf(const Candidate& c) const {
     return {c.x * m_grid.m_cell, c.y * m_grid.m_cell, (c.angle - m_angles) * kAngleStep};
@@ -194,20 +198,25 @@ class PlaneSearch::Search {
     const auto samples = static_cast<double>(std::set(cells.begin(), cells.end()).size());
     return static_cast<int>(kAlike * n * std::sqrt((squares / n - mean * mean) / samples));
   }
-  /** The places that exceed a score, from one of them to its neighbors, and so on. */
-  Places around(const Candidate& place, int least) const {
-    Places known{{place.angle, place.x, place.y}};
-    std::vector<std::array<int, 3>> open(known.begin(), known.end());
+  /** The places that exceed a score, from one of them to its neighbors, and so on.
+   * \return nothing if they are too many */
+  std::optional<Places> around(const Candidate& place, int least) const {
+    Places known, seen{{place.angle, place.x, place.y}};
+    std::vector<std::array<int, 3>> open(seen.begin(), seen.end());
+    const std::size_t most = std::min(kMostLooks / m_cells.front().size(), kMostAround);
     while (!open.empty()) {
       const auto from = open.back();
       open.pop_back();
+      if (scoreOf(0, from[0], from[1], from[2]) <= least) continue;
+      known.insert(from);
       for (int i = 0; i < 27; ++i) {
         const std::array<int, 3> to{from[0] + i / 9 - 1, from[1] + i / 3 % 3 - 1,
                                     from[2] + i % 3 - 1};
         if (to[0] < 0 || to[0] > 2 * m_angles || std::abs(to[1]) > m_radius ||
-            std::abs(to[2]) > m_radius || scoreOf(0, to[0], to[1], to[2]) <= least)
+            std::abs(to[2]) > m_radius || !seen.insert(to).second)
           continue;
-        if (known.insert(to).second) open.push_back(to);
+        if (seen.size() > most) return std::nullopt;
+        open.push_back(to);
       }
     }
     return known;

@@ -78,9 +78,10 @@ std::vector<std::string> SlamReport::warnings() const {
     warnings.push_back("more places seem to be seen again than fit together (" +
                        std::to_string(undone) + " loops were undone): the map may be torn");
   if (open > 0)
-    warnings.push_back(std::to_string(open) +
-                       " loops were left open at the end because two places fit: what was seen "
-                       "twice there may be drawn twice");
+    warnings.push_back("at the end of the way the robot may be in either of two places, by " +
+                       std::to_string(open) +
+                       " of its looks, and no loop was closed: what was seen twice there may be "
+                       "drawn twice");
   if (standing > kMostStanding)
     warnings.push_back("odometry stood still while the robot drove " + tenths(standing) +
                        " m by its scans: the map may be wrong there");

@@ -72,7 +72,8 @@ class Submap {
     /** The likeliest for a point; null: there is none. */
     const Distribution* find(const Eigen::Vector3d& point, double& squaredDistance) const;
   };
-  /** \param near of anything else, or of this: then it is hardly looked at. Valid until add() */
+  /** \param near new, or of a point of this submap before: nothing is done if the cube is the same.
+   * Valid until add() */
   void look(const Eigen::Vector3d& point, semantic_types::ClassId id, Near& near) const;
   /** The likeliest for a point of its class, in its cube and the six beside; null: there is none.
    */

@@ -40,7 +40,7 @@ struct SlamReport {
   std::size_t joined = 0;      ///< of these, those after which the robot was found again
   std::size_t loops = 0;       ///< edges to places of before
   std::size_t undone = 0;      ///< loops that contradicted the trajectory between their ends
-  std::size_t open = 0;        ///< not closed since the last loop, for two places fit as well
+  std::size_t open = 0;        ///< looks since the last loop that two places fit: none was closed
   std::size_t referenced = 0;  ///< keyframes that were found in the reference
   double way = 0;              ///< m
   double carried = 0;   ///< m, at most, from where odometry had the robot to where it was found
