@@ -123,6 +123,8 @@ TEST(PointClouds, haveTheClassesOfTheirFieldLabel) {
   const auto scan = *ScanConverter(table).convert(obs);
   EXPECT_EQ(scan.cloud.classes, (std::vector<ClassId>{1, 0, 2}));
   EXPECT_EQ(scan.times, (std::vector<float>{0.25f, 0.5f, 0.75f}));
+  add(4, 10, 1.7e9f);
+  EXPECT_EQ(ScanConverter(table).convert(obs)->times, std::vector<float>()) << "not after the scan";
   add(4, 41, 0);
   EXPECT_THROW(ScanConverter(table).convert(obs), std::runtime_error);
 }

@@ -90,6 +90,15 @@ std::vector<std::uint32_t> labelsOf(const CPointsMap& cloud) {
   return labels;
 }
 
+/** None if they are no seconds after a scan's own time: who wrote them means something else. */
+std::vector<float> timesOf(const CPointsMap& cloud) {
+  constexpr double kLongest = 1;  // s
+  const std::vector<double> times = field(cloud, "t");
+  const bool areTimes =
+      std::all_of(times.begin(), times.end(), [](double t) { return std::abs(t) <= kLongest; });
+  return areTimes ? std::vector<float>(times.begin(), times.end()) : std::vector<float>();
+}
+
 NamedCloud cloudOf(const CObservationPointCloud& observation) {
   if (!observation.pointcloud) throw std::invalid_argument("it holds no point cloud");
   const CPointsMap& cloud = *observation.pointcloud;
@@ -98,10 +107,7 @@ NamedCloud cloudOf(const CObservationPointCloud& observation) {
       zip(cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(), cloud.getPointsBufferRef_z());
   named.colors = colorsOf(cloud);
   named.rawIds = labelsOf(cloud);
-  for (const double time : field(cloud, "t")) {
-    if (!std::isfinite(time)) throw std::invalid_argument("its times are not all finite");
-    named.times.push_back(static_cast<float>(time));
-  }
+  named.times = timesOf(cloud);
   return named;
 }
 
