@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
-#include <iterator>
 #include <utility>
 
 namespace view_information {
@@ -15,16 +13,23 @@ using semantic_octree::TileChange;
 namespace {
 
 constexpr std::uint16_t kUnknown = 65535;
+constexpr std::uint16_t kMinus = 0x8000;  // of a float's upper half
 constexpr float kPassUnits = 65534;
 constexpr std::uint16_t kFree = 32767;  // pass: more is free
 constexpr int kHalf = 256;              // voxels
 constexpr int kNumbers = 64;            // values that hold the numbers of these, byte by byte
 constexpr float kLeastReach = 1e-3F;    // beyond it what a beam tells does not count
 
-std::uint16_t upperHalf(float value) {
+constexpr std::uint64_t kScatters = 0x9E3779B97F4A7C15U;  // the upper bits of its multiples
+
+std::uint32_t bitsOf(float value) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
-  return static_cast<std::uint16_t>((bits + 0x8000U) >> 16);
+  return bits;
+}
+
+std::uint16_t upperHalf(float value) {
+  return static_cast<std::uint16_t>((bitsOf(value) + 0x8000U) >> 16);
 }
 
 float ofUpperHalf(std::uint16_t half) {
@@ -116,7 +121,7 @@ GainField::GainField(semantic_octree::SemanticOcTree& map, const Question& quest
       m_model(map.numClasses(), map.filterParameters()),
       m_filter(map.numClasses(), map.filterParameters()),
       m_follower(map.follow()),
-      m_computed(kComputed),
+      m_computed(std::size_t{1} << (64 - kOfComputed)),
       m_nothingKnown(nothingKnown(map.numClasses())) {}
 
 GainField::Voxel GainField::packed(const Gain& gain) {
@@ -135,19 +140,23 @@ TileChange GainField::update() {
   return change;
 }
 
-/** Most voxels have one of few beliefs: what was computed last for one with the same hash is kept.
- * Classes of one kind are alike. */
+/** Most leaves are one of few: what was computed last for one with the same hash is kept. Classes
+ * of one kind are alike. The gain of what has no class record and is free gets a minus: who knows
+ * that it is air asks no more of it. */
 const GainField::Computed& GainField::computed(const SemanticOcTreeNode& leaf) {
-  const semantic_octree::ClassBelief<float> belief = m_map.belief(leaf);
-  Computed now{belief, leaf.getLogOdds(), {}};
-  const std::hash<float> hashOf;
-  std::size_t hash = hashOf(now.logOdds);
-  for (int i = 0; i < belief.count; ++i) {
-    now.belief.ids[i] = static_cast<ClassId>(m_question.kinds()[belief.ids[i]]);
-    hash = (hash ^ hashOf(belief.logOdds[i]) ^ now.belief.ids[i]) * 0x9E3779B97F4A7C15U;
+  Computed now;
+  now.logOdds = leaf.getLogOdds();
+  now.hasRecord = leaf.hasClassRecord();
+  std::uint64_t hash = bitsOf(now.logOdds) ^ now.hasRecord;
+  if (now.hasRecord) now.belief = m_map.belief(leaf);
+  for (int i = 0; i < now.belief.count; ++i) {
+    now.belief.ids[i] = static_cast<ClassId>(m_question.kinds()[now.belief.ids[i]]);
+    hash = (hash ^ bitsOf(now.belief.logOdds[i]) ^ now.belief.ids[i]) * kScatters;
   }
-  Computed& last = m_computed[(hash ^ hash >> 32) % kComputed];
-  if (last.logOdds == now.logOdds && last.belief == now.belief) return last;
+  Computed& last = m_computed[hash * kScatters >> kOfComputed];
+  if (last.logOdds == now.logOdds && last.hasRecord == now.hasRecord && last.belief == now.belief)
+    return last;
+  const auto belief = m_map.belief(leaf);
   const double fall = std::max(0.0, m_question.fallThrough(m_filter, m_model, belief));
   const double pass = passThrough(leaf.getOccupancy(), m_map.filterParameters().minOccupancy);
   now.voxel = packed({static_cast<float>(pass), static_cast<float>(fall)});
@@ -155,54 +164,61 @@ const GainField::Computed& GainField::computed(const SemanticOcTreeNode& leaf) {
     std::vector<double> p(m_nothingKnown.size());
     belief.distribution(m_map.numClasses(), p.data());
     now.known = static_cast<float>(m_question.divergence(p.data(), m_nothingKnown.data()));
+  } else if (!now.hasRecord) {
+    now.voxel.gain |= kMinus;
   }
   return last = now;
 }
 
-/** The gain of what has no class record is stored with a minus: who knows that it is air asks no
- * more of it. */
-GainField::Stored GainField::read(const octomap::OcTreeKey& low) {
-  constexpr std::uint16_t kMinus = 0x8000;
-  std::array<Voxel, kVoxels> voxels;
-  voxels.fill({kUnknown, 0});
-  Stored tile;
-  const octomap::OcTreeKey high = semantic_octree::octomapKey(low[0] + 7, low[1] + 7, low[2] + 7);
-  for (auto leaf = m_map.begin_leafs_bbx(low, high); leaf != m_map.end_leafs_bbx(); ++leaf) {
-    const Computed& of = computed(*leaf);
-    Voxel voxel = of.voxel;
-    if (!leaf->hasClassRecord() && !m_map.isNodeOccupied(*leaf)) voxel.gain |= kMinus;
-    const octomap::OcTreeKey first = leaf.getIndexKey();
-    const int edge = semantic_octree::edgeAtDepth(static_cast<int>(leaf.getDepth()));
-    std::array<int, 3> from{}, to{};
-    for (unsigned a = 0; a < 3; ++a) {
-      from[a] = std::max<int>(first[a], low[a]) - low[a];
-      to[a] = std::min<int>(first[a] + edge, low[a] + kEdge) - low[a];
-    }
-    for (int x = from[0]; x < to[0]; ++x)
-      for (int y = from[1]; y < to[1]; ++y)
-        for (int z = from[2]; z < to[2]; ++z, tile.known += of.known)
-          voxels[static_cast<std::size_t>(x << 6 | y << 3 | z)] = voxel;
+/** \param at the node's lowest voxel in the tile */
+void GainField::read(const SemanticOcTreeNode& node, int edge, int at, Tile& tile) {
+  if (!node.isLeaf()) {
+    const int half = edge / 2;
+    for (int i = 0; i < 8; ++i)
+      if (const SemanticOcTreeNode child = node.child(i))
+        read(child, half, at + (half * (i & 1) << 6 | half * (i >> 1 & 1) << 3 | half * (i >> 2)),
+             tile);
+    return;
   }
-  tile.halves = {stored(voxels.data()), stored(voxels.data() + kHalf)};
-  return tile;
+  const Computed& of = computed(node);
+  for (int x = 0; x < edge; ++x)
+    for (int y = 0; y < edge; ++y)
+      for (int z = 0; z < edge; ++z, tile.known += of.known)
+        tile.voxels[static_cast<std::size_t>(at + (x << 6 | y << 3 | z))] = of.voxel;
+}
+
+GainField::Stored GainField::read(const octomap::OcTreeKey& low) {
+  Tile tile;
+  tile.voxels.fill({kUnknown, 0});
+  const unsigned depth = semantic_octree::kTreeDepth - 3;
+  if (const SemanticOcTreeNode node = m_map.search(low, depth)) read(node, kEdge, 0, tile);
+  return {{stored(tile.voxels.data()), stored(tile.voxels.data() + kHalf)}, tile.known};
 }
 
 /** There are no more values than voxels: a byte numbers them. */
 GainField::Half GainField::stored(const Voxel* voxels) {
-  std::vector<Voxel> values;
-  std::unique_copy(voxels, voxels + kHalf, std::back_inserter(values));
-  const auto isBefore = [](const Voxel& a, const Voxel& b) {
-    return a.pass != b.pass ? a.pass < b.pass : a.gain < b.gain;
-  };
-  std::sort(values.begin(), values.end(), isBefore);
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  if (values.size() == 1) return values;
-  Half half(kNumbers + values.size());
-  std::copy(values.begin(), values.end(), half.begin() + kNumbers);
-  auto* numbers = reinterpret_cast<unsigned char*>(half.data());
-  for (int i = 0; i < kHalf; ++i)
-    numbers[i] = static_cast<unsigned char>(
-        std::lower_bound(values.begin(), values.end(), voxels[i], isBefore) - values.begin());
+  constexpr std::size_t kSlots = 512;
+  std::array<std::uint16_t, kSlots> slots{};  // number of a value and 1; 0: none
+  Half half(kNumbers);
+  std::array<unsigned char, kHalf> numbers;
+  for (std::size_t i = 0; i < kHalf; ++i) {
+    if (i > 0 && voxels[i] == voxels[i - 1]) {
+      numbers[i] = numbers[i - 1];
+      continue;
+    }
+    const std::uint64_t bits = std::uint64_t{voxels[i].pass} << 16 | voxels[i].gain;
+    std::size_t slot = bits * kScatters >> 55;
+    while (slots[slot] != 0 && !(half[kNumbers + slots[slot] - 1U] == voxels[i]))
+      slot = (slot + 1) % kSlots;
+    if (slots[slot] == 0) {
+      half.push_back(voxels[i]);
+      slots[slot] = static_cast<std::uint16_t>(half.size() - kNumbers);
+    }
+    numbers[i] = static_cast<unsigned char>(slots[slot] - 1);
+  }
+  if (half.size() == kNumbers + 1) return {half.back()};
+  std::memcpy(half.data(), numbers.data(), sizeof numbers);
+  half.shrink_to_fit();
   return half;
 }
 

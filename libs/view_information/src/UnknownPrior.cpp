@@ -58,7 +58,7 @@ LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Que
 void LearnedPrior::learn(int x, int y, int z, ClassId ground) {
   constexpr int kEdge = UnknownPatch::kEdge;
   const int px = x / kEdge, py = y / kEdge, column = x % kEdge * kEdge + y % kEdge;
-  Patch& patch = at(px, py);
+  Patch& patch = blockOf(px, py).patches[numberOf(px, py)];
   Ground& known = patch.columns[static_cast<std::size_t>(column)];
   const Ground now{ground, static_cast<std::uint16_t>(z)};
   if (known.z == now.z && known.id == now.id) return;
@@ -68,27 +68,27 @@ void LearnedPrior::learn(int x, int y, int z, ClassId ground) {
   if (!std::exchange(patch.hasChanged, true)) m_changed.push_back({px, py});
 }
 
-LearnedPrior::Patch& LearnedPrior::at(int x, int y) {
+LearnedPrior::Block& LearnedPrior::blockOf(int x, int y) {
   std::unique_ptr<Block>& block = m_blocks[keyOf(x / kBlock, y / kBlock)];
   if (!block) block = std::make_unique<Block>();
-  return (*block)[static_cast<std::size_t>(x % kBlock * kBlock + y % kBlock)];
+  return *block;
 }
 
-/** f(patch, squared distance in patches) within reach. */
+/** f(block, one bit for each of its patches within reach, where its first one is from x, y). */
 template <class F>
 void LearnedPrior::forNear(int x, int y, F f) const {
-  const int low = y - m_reach, high = y + m_reach;
+  constexpr std::uint64_t kEachRow = 0x0101010101010101U;
+  constexpr int kLast = kBlock - 1;
   for (int bx = (x - m_reach) / kBlock; bx <= (x + m_reach) / kBlock; ++bx)
-    for (int by = low / kBlock; by <= high / kBlock; ++by) {
+    for (int by = (y - m_reach) / kBlock; by <= (y + m_reach) / kBlock; ++by) {
       const auto block = m_blocks.find(keyOf(bx, by));
       if (block == m_blocks.end()) continue;
-      const int fromX = std::max(x - m_reach, bx * kBlock), fromY = std::max(low, by * kBlock);
-      const int toX = std::min(x + m_reach, bx * kBlock + kBlock - 1);
-      const int toY = std::min(high, by * kBlock + kBlock - 1);
-      for (int i = fromX; i <= toX; ++i)
-        for (int j = fromY; j <= toY; ++j)
-          f((*block->second)[static_cast<std::size_t>(i % kBlock * kBlock + j % kBlock)],
-            static_cast<std::size_t>((i - x) * (i - x) + (j - y) * (j - y)));
+      const int dx = bx * kBlock - x, dy = by * kBlock - y;
+      const int fromX = std::max(0, -m_reach - dx), toX = std::min(kLast, m_reach - dx);
+      const int fromY = std::max(0, -m_reach - dy), toY = std::min(kLast, m_reach - dy);
+      const std::uint64_t columns = ((2U << toY) - (1U << fromY)) * kEachRow;
+      const std::uint64_t rows = kAll >> (kBlock * (kLast - toX + fromX)) << (kBlock * fromX);
+      f(*block->second, columns & rows, dx, dy);
     }
 }
 
@@ -112,8 +112,10 @@ void LearnedPrior::count(Patch& patch) {
 /** All around what changed is to be predicted anew. */
 void LearnedPrior::spread() {
   for (const auto& [x, y] : m_changed) {
-    count(at(x, y));
-    forNear(x, y, [](Patch& patch, std::size_t) { patch.isStale = true; });
+    Block& block = blockOf(x, y);
+    count(block.patches[numberOf(x, y)]);
+    block.known |= std::uint64_t{1} << numberOf(x, y);
+    forNear(x, y, [](Block& near, std::uint64_t patches, int, int) { near.stale |= patches; });
   }
   m_changed.clear();
   m_worthAbove = worthOf(above(ground({Distribution(m_standsOn.size(), 0)})));
@@ -133,28 +135,35 @@ void LearnedPrior::learnAbove(int x, int y, int z, ClassId ground) {
 
 const UnknownPatch& LearnedPrior::patch(int x, int y) {
   if (!m_changed.empty()) spread();
-  Patch& patch = at(x, y);
-  if (patch.isStale) predict(x, y, patch);
-  patch.isStale = false;
-  return patch.prior;
+  Block& block = blockOf(x, y);
+  const std::uint64_t bit = std::uint64_t{1} << numberOf(x, y);
+  UnknownPatch& prior = block.patches[numberOf(x, y)].prior;
+  if (block.stale & bit) predict(x, y, prior);
+  block.stale &= ~bit;
+  return prior;
 }
 
 UnknownPatch LearnedPrior::lookAt(int x, int y) const {
-  const auto block = m_blocks.find(keyOf(x / kBlock, y / kBlock));
-  const auto at = static_cast<std::size_t>(x % kBlock * kBlock + y % kBlock);
-  Patch patch = block == m_blocks.end() ? Patch() : (*block->second)[at];
-  if (patch.isStale) predict(x, y, patch);
-  return patch.prior;
+  const auto found = m_blocks.find(keyOf(x / kBlock, y / kBlock));
+  const std::size_t number = numberOf(x, y);
+  const bool isThere = found != m_blocks.end();
+  UnknownPatch prior = isThere ? found->second->patches[number].prior : UnknownPatch();
+  if (!isThere || found->second->stale >> number & 1) predict(x, y, prior);
+  return prior;
 }
 
 LearnedPrior::Near LearnedPrior::near(int x, int y) const {
   Near near{Distribution(m_standsOn.size(), 0)};
-  forNear(x, y, [&](const Patch& patch, std::size_t distance2) {
-    if (patch.known == 0) return;
-    const double weight = m_columnArea * m_kernel[distance2];
-    near.height += weight * patch.heights, near.heights += weight * patch.known;
-    for (const auto& [id, columns] : patch.classes)
-      near.ground[id] += weight * columns, near.classes += weight * columns;
+  forNear(x, y, [&](const Block& block, std::uint64_t patches, int dx, int dy) {
+    for (std::uint64_t left = block.known & patches; left != 0; left &= left - 1) {
+      const int number = __builtin_ctzll(left);
+      const Patch& patch = block.patches[static_cast<std::size_t>(number)];
+      const int i = dx + number / kBlock, j = dy + number % kBlock;
+      const double weight = m_columnArea * m_kernel[static_cast<std::size_t>(i * i + j * j)];
+      near.height += weight * patch.heights, near.heights += weight * patch.known;
+      for (const auto& [id, columns] : patch.classes)
+        near.ground[id] += weight * columns, near.classes += weight * columns;
+    }
   });
   return near;
 }
@@ -202,10 +211,9 @@ Gain LearnedPrior::gainOf(const Distribution& p, const Distribution& worth) cons
   return {static_cast<float>(passThrough(1 - p[0], 0)), static_cast<float>(std::max(0.0, gain))};
 }
 
-void LearnedPrior::predict(int x, int y, Patch& patch) const {
+void LearnedPrior::predict(int x, int y, UnknownPatch& prior) const {
   const Near around = near(x, y);
   const Distribution g = ground(around);
-  UnknownPatch& prior = patch.prior;
   prior.ground = around.heights > 0 ? static_cast<int>(std::lround(around.height / around.heights))
                                     : m_usualHeight;
   prior.top = prior.ground + static_cast<int>(kHighest / m_map.getResolution());

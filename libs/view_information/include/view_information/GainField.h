@@ -105,12 +105,13 @@ class GainField {
     float known = 0;  ///< nats
   };
   struct Computed {
-    semantic_octree::ClassBelief<float> belief;
+    semantic_octree::ClassBelief<float> belief;  ///< of a class record
     float logOdds = std::numeric_limits<float>::quiet_NaN();
+    bool hasRecord = false;
     Voxel voxel{};
     float known = 0;  ///< nats
   };
-  static constexpr std::size_t kComputed = 4096;
+  static constexpr int kOfComputed = 52;  ///< bits of a hash beside the number of a Computed
   struct View;
   class Surroundings;
 
@@ -124,7 +125,12 @@ class GainField {
   template <class Visit>
   void lookAround(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from,
                   Visit visit) const;
+  struct Tile {
+    std::array<Voxel, kVoxels> voxels;
+    float known = 0;  ///< nats
+  };
   Stored read(const octomap::OcTreeKey& low);
+  void read(const semantic_octree::SemanticOcTreeNode& node, int edge, int at, Tile& tile);
   const Computed& computed(const semantic_octree::SemanticOcTreeNode& leaf);
   static Half stored(const Voxel* voxels);
   /** The half that a voxel is in; null: nothing is known there. */

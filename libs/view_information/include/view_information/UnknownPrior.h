@@ -98,7 +98,6 @@ class LearnedPrior : public UnknownPrior {
   };
   struct Patch {
     std::array<Ground, kColumns> columns{};
-    bool isStale = true;        ///< the prior
     bool hasChanged = false;    ///< what is known, and it is among m_changed
     std::uint16_t known = 0;    ///< columns
     std::uint32_t heights = 0;  ///< their sum
@@ -106,19 +105,27 @@ class LearnedPrior : public UnknownPrior {
     UnknownPatch prior;
   };
   static constexpr int kBlock = 8;  ///< patches; blocks are looked up, patches are not
-  using Block = std::array<Patch, kBlock * kBlock>;
+  static constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  struct Block {
+    std::array<Patch, kBlock * kBlock> patches;
+    std::uint64_t known = 0;     ///< one bit a patch: some of its ground is
+    std::uint64_t stale = kAll;  ///< the same: its prior is
+  };
   using Distribution = std::vector<double>;
 
   static std::uint64_t keyOf(int x, int y) {
     return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(y);
   }
-  Patch& at(int x, int y);
+  static std::size_t numberOf(int x, int y) {
+    return static_cast<std::size_t>(x % kBlock * kBlock + y % kBlock);
+  }
+  Block& blockOf(int x, int y);
   template <class F>
   void forNear(int x, int y, F f) const;
   void count(Patch& patch);
   void spread();
   void learnAbove(int x, int y, int z, ClassId ground);
-  void predict(int x, int y, Patch& patch) const;
+  void predict(int x, int y, UnknownPatch& prior) const;
   /** What is near a patch: the weight of each class of ground, and of heights. */
   struct Near {
     Distribution ground;
