@@ -147,15 +147,15 @@ LabeledCloud deadEndSeenFrom(double x, double end, std::mt19937& random) {
   return cloud;
 }
 
-/** The last of some meters through it, to x = 6 m; odometry is right. */
-PoseEdge driveIntoDeadEnd(double end) {
+/** Some meters through it, to x = 6 m; odometry is right. */
+Slam drivenIntoDeadEnd(double end) {
   std::mt19937 random(1);
   Slam slam({});
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   for (; T.translation().x() < 6; T.translation().x() += 1.01)
     slam.add(deadEndSeenFrom(T.translation().x(), end, random), Eigen::Isometry3d::Identity(), T);
   EXPECT_EQ(slam.report().lost, 0u);
-  return slam.edges().back();
+  return slam;
 }
 
 double alongIt(const PoseEdge& edge) { return edge.information(0, 0); }
@@ -166,13 +166,17 @@ const double kOfOdometry = 1 / std::pow(0.2 * (0.01 + 0.1 * std::sqrt(1.01)), 2)
 }  // namespace
 
 TEST(Slam, aRegistrationIsAsCertainAsItsPointsMakeIt) {
-  const PoseEdge edge = driveIntoDeadEnd(12);
+  const Slam slam = drivenIntoDeadEnd(12);
+  const PoseEdge& edge = slam.edges().back();
+  EXPECT_EQ(slam.report().unheld, 0);
   EXPECT_GT(alongIt(edge), 4 * kOfOdometry) << "else odometry's errors stay";
   EXPECT_GT(acrossIt(edge), 3 * alongIt(edge)) << "two long walls say more than a short one";
 }
 
 TEST(Slam, alongACorridorWithoutAnEndOdometryHolds) {
-  const PoseEdge edge = driveIntoDeadEnd(1e9);
+  const Slam slam = drivenIntoDeadEnd(1e9);
+  const PoseEdge& edge = slam.edges().back();
+  EXPECT_NEAR(slam.report().unheld, slam.report().way, 1e-9);
   EXPECT_GT(acrossIt(edge), 6 * kOfOdometry);
   EXPECT_LT(alongIt(edge), 1.5 * kOfOdometry);
   EXPECT_NEAR(edge.T_a_b.translation().x(), 1.01, 0.005);

@@ -14,6 +14,9 @@
 namespace semantic_octree {
 namespace {
 
+/** Makes some tiles of a tree what they are in another tree, as an insertion would: nodes are
+ * pruned, inner nodes' bookkeeping follows, and it is told where something changed. Both trees are
+ * pruned, or both are not. */
 class TileReplacement {
  public:
   TileReplacement(const MergeTarget& target, const NodeStore& source)
@@ -22,8 +25,8 @@ class TileReplacement {
         m_source(source),
         m_comparison(target.store, source, nullptr) {}
 
-  void replace(const TileRange& tiles) {
-    replace(m_store.root(), Cube(), tiles, m_source.root());
+  void replace(const TileCodes& tiles) {
+    replace(m_store.root(), Cube(), {tiles.begin(), tiles.end()}, m_source.root());
     m_nodes.tellNoted();
   }
 
@@ -104,14 +107,6 @@ class TileReplacement {
   const NodeStore& m_source;
   TreeComparison m_comparison;
 };
-
-/** Makes some tiles of a tree what they are in another tree, as an insertion would: nodes are
- * pruned, inner nodes' bookkeeping follows, and it is told where something changed. Both trees are
- * pruned, or both are not. */
-void replaceTiles(const MergeTarget& target, const TileCodes& tiles, const NodeStore& source) {
-  const TileRange all{tiles.begin(), tiles.end()};
-  if (!all.empty()) TileReplacement(target, source).replace(all);
-}
 
 }  // namespace
 
@@ -217,7 +212,7 @@ class KeyframeMap::Correction {
     MapAccess::change(m.map, [&](const MergeTarget& target) {
       for (const TileCodes& part : parts) {
         if (&part != &parts.front()) anew = madeAnew(part);
-        replaceTiles(target, part, MapAccess::store(anew));
+        TileReplacement(target, MapAccess::store(anew)).replace(part);
       }
     });
     m_report.scansMerged =

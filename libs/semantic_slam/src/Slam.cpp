@@ -82,6 +82,15 @@ std::vector<std::string> SlamReport::warnings() const {
                        std::to_string(open) +
                        " of its looks, and no loop was closed: what was seen twice there may be "
                        "drawn twice");
+  if (twofold > 0)
+    warnings.push_back("by " + std::to_string(twofold) +
+                       " looks, two places fit what was seen after scans that fit nothing: it was "
+                       "put in neither, and may be drawn twice");
+  if (unheld > kLeastWay)
+    warnings.push_back(std::to_string(std::lround(unheld)) +
+                       " m of the way had no hold along corridors or walls: " +
+                       (hasOdometry ? "the wheels alone placed the robot there"
+                                    : "it was taken to go on as before"));
   if (standing > kMostStanding)
     warnings.push_back("odometry stood still while the robot drove " + tenths(standing) +
                        " m by its scans: the map may be wrong there");
