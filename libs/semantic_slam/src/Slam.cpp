@@ -57,23 +57,20 @@ std::vector<std::string> SlamReport::warnings() const {
     warnings.push_back(percent(static_cast<double>(lost) / static_cast<double>(scans)) +
                        " of the scans fit nothing that was seen before, and are where odometry has "
                        "them: the map is probably wrong there");
-  if (torn > joined && !hasOdometry)
-    warnings.push_back("at " + std::to_string(torn - joined) +
-                       " places scans fit nothing that was seen before, and there is no odometry: "
-                       "parts of the map may be beside each other; poses of odometry help");
-  if (torn > joined && hasOdometry)
+  const auto lostAt = [](std::size_t places) {
+    return "at " + std::to_string(places) + " places scans fit nothing that was seen before, and ";
+  };
+  if (torn > joined)
     warnings.push_back(
-        "at " + std::to_string(torn - joined) +
-        " places scans fit nothing that was seen before, and only odometry leads "
-        "across: parts of the map are beside each other if it errs, if the robot was "
-        "carried, or if a part of the log is missing");
+        lostAt(torn - joined) +
+        (hasOdometry ? "only odometry leads across: parts of the map are beside each other if it "
+                       "errs, if the robot was carried, or if a part of the log is missing"
+                     : "there is no odometry: parts of the map may be beside each other; poses of "
+                       "odometry help"));
   if (joined > 0)
-    warnings.push_back("at " + std::to_string(joined) +
-                       " places scans fit nothing that was seen before, and the robot was found "
-                       "again up to " +
-                       tenths(carried) +
-                       " m from where odometry has it: it was "
-                       "carried, a part of the log is missing, or odometry erred");
+    warnings.push_back(lostAt(joined) + "the robot was found again up to " + tenths(carried) +
+                       " m from where odometry has it: it was carried, a part of the log is "
+                       "missing, or odometry erred");
   if (undone > loops)
     warnings.push_back("more places seem to be seen again than fit together (" +
                        std::to_string(undone) + " loops were undone): the map may be torn");
