@@ -103,7 +103,6 @@ Trajectory ownTrajectory(const std::vector<fs::path>& rawlogs, bool isNeeded) {
   return found;
 }
 
-namespace fs = std::filesystem;
 using labeled_cloud::ScanStreamOptions;
 using mrpt::config::CConfigFile;
 using strict_files::OptionList;

@@ -67,12 +67,16 @@ void append(Recording& r, const Recording& part, std::size_t from, std::size_t t
 
 }  // namespace
 
-TEST(Planar, loopsThatTwoPlacesFitAreTold) {
+TEST(Planar, whatTwoPlacesFitIsTold) {
   SlamReport report;
   EXPECT_TRUE(report.warnings().empty());
   report.open = 3;
-  ASSERT_EQ(report.warnings().size(), 1u);
+  report.twofold = 2;
+  report.unheld = 31.2;
+  ASSERT_EQ(report.warnings().size(), 3u);
   EXPECT_TRUE(contains(report.warnings()[0], "in either of two places, by 3 of its looks"));
+  EXPECT_TRUE(contains(report.warnings()[1], "by 2 looks, two places fit what was seen after"));
+  EXPECT_TRUE(contains(report.warnings()[2], "31 m of the way had no hold along corridors"));
 }
 
 TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {
@@ -87,8 +91,9 @@ TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {
   EXPECT_NEAR(d->information(1, 1), 1 / across, 1e-2);
   EXPECT_NEAR(d->information.row(2).norm() + d->information.col(2).norm(), 0, 1e-9);
   EXPECT_NEAR(squared, 0.1 * 0.1 / across, 1e-3);
-  EXPECT_NEAR(d->evidence(0, 0), 1 / along - 12, 1e-3) << "nearly none: it goes on";
-  EXPECT_NEAR(d->evidence(1, 1), 1 / across - 12, 1e-2);
+  const double byChance = 12 * (1 + 2 * std::sqrt(0.8 / 8));
+  EXPECT_NEAR(d->evidence(0, 0), 0, 1e-9) << "it goes on";
+  EXPECT_NEAR(d->evidence(1, 1), 1 / across - byChance, 1e-2);
   EXPECT_NEAR(d->evidence.row(2).norm() + d->evidence.col(2).norm(), 0, 1e-9);
 }
 

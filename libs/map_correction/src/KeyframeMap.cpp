@@ -14,6 +14,9 @@
 namespace semantic_octree {
 namespace {
 
+/** Makes some tiles of a tree what they are in another tree, as an insertion would: nodes are
+ * pruned, inner nodes' bookkeeping follows, and it is told where something changed. Both trees are
+ * pruned, or both are not. */
 class TileReplacement {
  public:
   TileReplacement(const MergeTarget& target, const NodeStore& source)
@@ -22,8 +25,8 @@ class TileReplacement {
         m_source(source),
         m_comparison(target.store, source, nullptr) {}
 
-  void replace(const TileRange& tiles) {
-    replace(m_store.root(), Cube(), tiles, m_source.root());
+  void replace(const TileCodes& tiles) {
+    replace(m_store.root(), Cube(), {tiles.begin(), tiles.end()}, m_source.root());
     m_nodes.tellNoted();
   }
 
@@ -64,11 +67,8 @@ class TileReplacement {
     return m_nodes.finish(slot, cell, changed, true);
   }
 
-  /** A node that was replaced knows nothing of what was told of the one before: it counts as
-   * reshaped. */
-  void recompute(Slot& inner, const Cube& cell) { m_nodes.recompute(inner, cell, true); }
-
-  /** A tile, or a node below. What is alike stays where it is. */
+  /** A tile, or a node below. What is alike stays where it is. What is replaced knows nothing of
+   * what was told of the node before: it counts as reshaped. */
   bool replaceAll(Slot& slot, const Cube& cell, const Slot& source) {
     if (m_comparison.same(slot, source)) return false;
     if (slot.kind != Slot::Kind::Octant || source.kind != Slot::Kind::Octant) {
@@ -79,7 +79,7 @@ class TileReplacement {
     for (int i = 0; i < 8; ++i)
       replaceAll(m_store.octant(slot).slots[i], cell.child(i), m_source.octant(source).slots[i]);
     slot.value = source.value;
-    recompute(slot, cell);
+    m_nodes.recompute(slot, cell, true);
     return true;
   }
 
@@ -96,7 +96,7 @@ class TileReplacement {
       m_nodes.arena.createBlock(unknown, m_source.contentOf(m_source.block(source)));
     }
     unknown.value = source.value;
-    if (unknown.isInner()) recompute(unknown, cell);
+    if (unknown.isInner()) m_nodes.recompute(unknown, cell, true);
   }
 
   NodeEditor m_nodes;
@@ -104,14 +104,6 @@ class TileReplacement {
   const NodeStore& m_source;
   TreeComparison m_comparison;
 };
-
-/** Makes some tiles of a tree what they are in another tree, as an insertion would: nodes are
- * pruned, inner nodes' bookkeeping follows, and it is told where something changed. Both trees are
- * pruned, or both are not. */
-void replaceTiles(const MergeTarget& target, const TileCodes& tiles, const NodeStore& source) {
-  const TileRange all{tiles.begin(), tiles.end()};
-  if (!all.empty()) TileReplacement(target, source).replace(all);
-}
 
 }  // namespace
 
@@ -152,9 +144,6 @@ struct KeyframeMap::Content {
     const TileBox box(tilesOf(voxels));
     return {storage.keep(voxels.release()), box};
   }
-  PackedScan load(const StoredVoxels& voxels) const {
-    return PackedScan(storage.load(voxels.packed));
-  }
   /** Calls f with a scan for it to fill; what fails half-filled must not leak into the next. */
   template <typename F>
   void inBuffers(const F& f) {
@@ -192,7 +181,7 @@ class KeyframeMap::Correction {
   /** The scan is to be as if its keyframe were there. */
   void move(std::size_t scan, const Eigen::Isometry3d& T_map_keyframe) {
     const auto& s = m.scans[scan];
-    const PackedScan before = m.load(s.voxels);
+    const PackedScan before(m.storage.load(s.voxels.packed));
     const LabeledCloud cloud = unpackCloud(m.storage.load(s.cloud));
     m.inBuffers([&](Scan& traced) {
       m.trace(s, cloud, T_map_keyframe, traced);
@@ -204,7 +193,7 @@ class KeyframeMap::Correction {
   }
   /** The scan is to be as if it had seen nothing. */
   void remove(std::size_t scan) {
-    addTiles(tilesOf(m.load(m.scans[scan].voxels)));
+    addTiles(tilesOf(PackedScan(m.storage.load(m.scans[scan].voxels.packed))));
     m_voxels[scan] = m.keep(PackedScan(false, {}));
   }
 
@@ -217,7 +206,7 @@ class KeyframeMap::Correction {
     MapAccess::change(m.map, [&](const MergeTarget& target) {
       for (const TileCodes& part : parts) {
         if (&part != &parts.front()) anew = madeAnew(part);
-        replaceTiles(target, part, MapAccess::store(anew));
+        TileReplacement(target, MapAccess::store(anew)).replace(part);
       }
     });
     m_report.scansMerged =
@@ -264,7 +253,7 @@ class KeyframeMap::Correction {
   }
   void merge(std::size_t i, const TileCodes& tiles, SemanticOcTree& anew) {
     const InsertionOptions& options = m.scans[i].options;
-    const PackedScan voxels = m.load(voxelsOf(i));
+    const PackedScan voxels(m.storage.load(voxelsOf(i).packed));
     m.inBuffers([&](Scan& scan) {
       unpack(voxels, tiles, m.map.numClasses(), options, scan);
       MapAccess::merge(anew, scan, options.threads);

@@ -23,6 +23,9 @@ constexpr int kFewestInSpace = 6, kFewestInPlane = 3;
 /** Least standard deviation of a surface, of a cube's edge: in small cubes it counts as thin as it
  * is, and those of large ones reach out to points that are far off yet. */
 constexpr double kThinnest = 0.03;
+/** Evidence of a filled cube by so many standard deviations of its points' variance is chance: else
+ * a wall without an end would tell a little of the way along it. */
+constexpr double kByChance = 2;
 /** The least ratio of a surface's two widths, squared. A narrow one is but a ring that a LiDAR left
  * on it. */
 constexpr double kNarrowest = 0.3;
@@ -175,7 +178,9 @@ void Submap::add(const Submap& finer) {
 }
 
 auto Submap::distributionOf(const Sum& s) const -> Distribution {
-  const double ofFilledCube = 12 / (m_cellSize * m_cellSize);
+  // Variances of n points all over a cube scatter by sqrt(0.8 / n) of their mean.
+  const double ofFilledCube =
+      12 / (m_cellSize * m_cellSize) * (1 + kByChance * std::sqrt(0.8 / s.n));
   const Eigen::Vector3d mean = s.sum / s.n;
   Eigen::Matrix3d covariance = s.squares / s.n - mean * mean.transpose();
   // What a plane of beams says of height is zero: it is made the widest axis, then left out.

@@ -57,23 +57,20 @@ std::vector<std::string> SlamReport::warnings() const {
     warnings.push_back(percent(static_cast<double>(lost) / static_cast<double>(scans)) +
                        " of the scans fit nothing that was seen before, and are where odometry has "
                        "them: the map is probably wrong there");
-  if (torn > joined && !hasOdometry)
-    warnings.push_back("at " + std::to_string(torn - joined) +
-                       " places scans fit nothing that was seen before, and there is no odometry: "
-                       "parts of the map may be beside each other; poses of odometry help");
-  if (torn > joined && hasOdometry)
+  const auto lostAt = [](std::size_t places) {
+    return "at " + std::to_string(places) + " places scans fit nothing that was seen before, and ";
+  };
+  if (torn > joined)
     warnings.push_back(
-        "at " + std::to_string(torn - joined) +
-        " places scans fit nothing that was seen before, and only odometry leads "
-        "across: parts of the map are beside each other if it errs, if the robot was "
-        "carried, or if a part of the log is missing");
+        lostAt(torn - joined) +
+        (hasOdometry ? "only odometry leads across: parts of the map are beside each other if it "
+                       "errs, if the robot was carried, or if a part of the log is missing"
+                     : "there is no odometry: parts of the map may be beside each other; poses of "
+                       "odometry help"));
   if (joined > 0)
-    warnings.push_back("at " + std::to_string(joined) +
-                       " places scans fit nothing that was seen before, and the robot was found "
-                       "again up to " +
-                       tenths(carried) +
-                       " m from where odometry has it: it was "
-                       "carried, a part of the log is missing, or odometry erred");
+    warnings.push_back(lostAt(joined) + "the robot was found again up to " + tenths(carried) +
+                       " m from where odometry has it: it was carried, a part of the log is "
+                       "missing, or odometry erred");
   if (undone > loops)
     warnings.push_back("more places seem to be seen again than fit together (" +
                        std::to_string(undone) + " loops were undone): the map may be torn");
@@ -82,6 +79,15 @@ std::vector<std::string> SlamReport::warnings() const {
                        std::to_string(open) +
                        " of its looks, and no loop was closed: what was seen twice there may be "
                        "drawn twice");
+  if (twofold > 0)
+    warnings.push_back("by " + std::to_string(twofold) +
+                       " looks, two places fit what was seen after scans that fit nothing: it was "
+                       "put in neither, and may be drawn twice");
+  if (unheld > kLeastWay)
+    warnings.push_back(std::to_string(std::lround(unheld)) +
+                       " m of the way had no hold along corridors or walls: " +
+                       (hasOdometry ? "the wheels alone placed the robot there"
+                                    : "it was taken to go on as before"));
   if (standing > kMostStanding)
     warnings.push_back("odometry stood still while the robot drove " + tenths(standing) +
                        " m by its scans: the map may be wrong there");

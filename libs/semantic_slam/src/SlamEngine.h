@@ -72,6 +72,9 @@ class SlamEngine {
   bool beginsKeyframe(const Pose& T_last_robot) const;
   void noteFound(const Pose& T_step, const Pose& T_last_robot, const Registration& registered);
   void noteLost(const Pose& T_step);
+  /** Whether a scan tells more of where the robot is, in each direction, than its wheels do from
+   * one end to the other of what it is registered to. */
+  bool isHeld(const Matrix6& ofScan) const;
   /** Whether scans move while odometry does not. \param T_moved by this scan */
   void noteStanding(const Pose& T_moved);
   /** Whether scans fit nothing, one after the other, and there is no odometry: what follows is
@@ -118,7 +121,7 @@ class SlamEngine {
   void tearAt(std::size_t first);
   bool joinPiece();
   /** Where the newest stretch fits best of all places before the piece. */
-  std::optional<PoseEdge> findPiece() const;
+  std::optional<PoseEdge> findPiece();
 
   // --- Loops and the reference ---
   bool closeLoops();

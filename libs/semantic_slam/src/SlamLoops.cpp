@@ -119,6 +119,7 @@ bool SlamEngine::closeLoops() {
       if (m_piece && place < *m_piece) {  // it is where odometry has it
         m_piece.reset();
         --m_report.torn;
+        m_report.twofold = 0;
       }
       m_report.loops += m_edges.size() - before;
       m_report.open = 0;

@@ -106,12 +106,13 @@ bool SlamEngine::joinPiece() {
   }
   m_edges.push_back(*found);
   ++m_report.loops;
+  m_report.twofold = 0;
   m_piece.reset();
   optimizePoses();
   return true;
 }
 
-std::optional<PoseEdge> SlamEngine::findPiece() const {
+std::optional<PoseEdge> SlamEngine::findPiece() {
   const std::size_t newest = m_keyframes.size() - 1, first = *m_piece;
   const double cell = kCells * m_scale.gridCell;
   const std::size_t length = std::min(newest - first, kSearched);
@@ -130,6 +131,7 @@ std::optional<PoseEdge> SlamEngine::findPiece() const {
   const Eigen::Vector2d middle = box.center();
   const auto found = PlaneSearch(all, cell).find(some, {middle.x(), middle.y(), 0},
                                                  {box.sizes().maxCoeff() / 2, M_PI}, kFoundScore);
+  m_report.twofold += found && !found->isAlone;
   if (!found || !found->isAlone) return std::nullopt;
   return edgeNear(poseOfFlat(found->pose), 0, first - 1, kSearched / 2, stretch, kFoundMatched);
 }

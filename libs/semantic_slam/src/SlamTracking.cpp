@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -98,6 +99,7 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
     return beginFirst(now);
   }
 
+  const Matrix6 ofPrediction = m_noise.information(T_step);
   auto registered = track(now, T_step);
   if (registered && isMeasured &&
       !m_first.times.empty()) {  // alike skewed, they tell how fast the robot is
@@ -107,7 +109,10 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
   }
   const Pose T_last_robot = registered ? registered->T_submap_scan : T_guess;
   const Pose T_moved = rigid(m_T_keyframe_last.inverse() * T_last_robot);
+  const Matrix6 ofScan =
+      registered ? Matrix6(registered->information - ofPrediction) : Matrix6::Zero();
   m_report.way += wayOf(T_moved);
+  if (registered && !isHeld(ofScan + levelOf(T_odometry))) m_report.unheld += wayOf(T_moved);
   noteStanding(T_moved);
   registered ? noteFound(T_step, T_last_robot, *registered) : noteLost(T_step);
   m_velocity = velocityBy(m_T_step);
@@ -118,8 +123,10 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
   m_stepScans = 1 + m_numSmall;
   m_numSmall = 0;
   if (!beginsKeyframe(T_last_robot)) return {last, T_last_robot, false, false, m_velocity};
+  // Where scans do not hold the robot, what predictions err by since then adds up.
   m_edges.push_back(
-      {last, last + 1, T_last_robot, registered ? registered->information : guessed(T_last_robot)});
+      {last, last + 1, T_last_robot,
+       registered ? ofScan + m_noise.information(T_last_robot) : guessed(T_last_robot)});
   if (isTorn()) m_local.clear();
   begin(now, rigid(m_poses.back() * T_last_robot), T_last_robot);
   const bool mended = mendPieces(), followed = followReference();
@@ -203,6 +210,14 @@ void SlamEngine::noteStanding(const Pose& T_moved) {
   const bool stands = m_hasOdometry && m_T_odometry_step.isApprox(Pose::Identity());
   m_T_standing = stands ? rigid(m_T_standing * T_moved) : Pose::Identity();
   m_report.standing = std::max(m_report.standing, wayOf(m_T_standing));
+}
+
+bool SlamEngine::isHeld(const Matrix6& ofScan) const {
+  const Pose T_across(
+      Eigen::Translation3d(m_scale.submapKeyframes * m_scale.keyframeDistance, 0, 0));
+  const Matrix6 across = m_noise.information(T_across), both = (ofScan + across).inverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(both.topLeftCorner<3, 3>());
+  return 2 * axes.eigenvalues()[2] * across(0, 0) < 1;
 }
 
 bool SlamEngine::lossIsRare() const {
