@@ -128,7 +128,9 @@ class RelaxedSearch {
 RelaxedField::RelaxedField(const CollisionChecker& checker)
     : m_checker(checker),
       m_surfaces(checker.ground().layers().surfaces()),
-      m_labels(m_surfaces.size()) {
+      m_tiles(m_surfaces.size()) {
+  for (std::size_t i = 0; i < m_tiles.size(); ++i)
+    m_tiles[i].surfaces = m_surfaces.at(static_cast<std::int32_t>(i));
   for (std::size_t step = 0; step < kSteps.size(); ++step)
     for (const double y : checker.wheels()) m_wheels[step].push_back(turned(0, y, step));
 }
