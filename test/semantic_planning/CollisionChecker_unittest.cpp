@@ -206,3 +206,27 @@ TEST_F(CollisionCheckerTest, answersSeveralThreadsAsOne) {
   for (int i = 0; i < 4; ++i) found.push_back(std::async(std::launch::async, lengths));
   for (auto& f : found) EXPECT_TRUE(f.get() == expected);
 }
+
+TEST_F(CollisionCheckerTest, ofASearchAnswersAlike) {
+  const CollisionChecker ofSearch = checker.forSearch();
+  const auto lengths = [](const CollisionChecker& asked, const GroundPose& a, const GroundPose& b,
+                          double budget) {
+    ClassBudget left{{0, 0, 1, 0.5, 2}, budget};
+    std::vector<std::pair<ClassId, std::int64_t>> all;
+    const auto profile =
+        asked.profile(asked.motionCost().shortest(a.pose, b.pose), a.z, b.z, &left);
+    for (const auto& part : profile.value_or(EdgeProfile()))
+      all.emplace_back(part.classId, part.length);
+    return all;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    const auto a = i % 2 ? draw() : drawAligned(), b = i % 2 ? draw() : drawAligned();
+    if (!a || !b || !isNear(*a, *b)) continue;
+    const double budget = i % 3 ? 100 : 0.5;
+    const auto found = lengths(ofSearch, *a, *b, budget);
+    ASSERT_EQ(found, lengths(checker, *a, *b, budget)) << a->pose << " to " << b->pose;
+    ++(found.empty() ? blocked : free);
+  }
+  EXPECT_GT(free, 500);
+  EXPECT_GT(blocked, 500);
+}

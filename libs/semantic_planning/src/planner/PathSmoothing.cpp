@@ -126,7 +126,11 @@ class Smoothing {
  public:
   Smoothing(const std::vector<PathPoint>& path, const CollisionChecker& checker,
             const ClassPrices& prices)
-      : m_checker(checker), m_perMeter(prices.perMeter()) {
+      : m_checker(checker),
+        m_perMeter(prices.perMeter()),
+        m_budget{m_perMeter, std::numeric_limits<double>::max()} {
+    for (const double price : m_perMeter)
+      if (std::isfinite(price)) m_rounding += price * colored_graph::toMeters(2 * kRounding);
     for (std::size_t i = 0; i + 1 < path.size();) i = addPart(path, i);
     m_end = checker.ground().keyOf(path.back().z);
   }
@@ -147,6 +151,7 @@ class Smoothing {
 
  private:
   static constexpr double kLeastGain = 0.02;  // m
+  static constexpr Length kRounding = 20;     ///< of a class's length, at most
 
   /** From a point of the path to where curvature or gear change. \return that point */
   std::size_t addPart(const std::vector<PathPoint>& path, std::size_t from) {
@@ -195,9 +200,8 @@ class Smoothing {
   }
 
   /** \param end key of the surface at its end */
-  bool evaluate(Part& part, int end) const {
-    ClassBudget budget{m_perMeter, std::numeric_limits<double>::max()};
-    auto profile = m_checker.profile(curveOf(part.arc), part.z, end, &budget);
+  bool evaluate(Part& part, int end) {
+    auto profile = m_checker.profile(curveOf(part.arc), part.z, end, &m_budget);
     if (profile) part.profile = std::move(*profile);
     return profile.has_value();
   }
@@ -279,10 +283,11 @@ class Smoothing {
     --m_looks;
     Slices::count(20);
     std::vector<Part> parts = partsOf(r);
-    if (!evaluate(r, parts)) return false;
     const auto begin = m_parts.begin() + static_cast<std::ptrdiff_t>(r.before),
                end = m_parts.begin() + static_cast<std::ptrdiff_t>(r.after) + 1;
-    if (r.gain - moreOfClasses({begin, end}, parts) < kLeastGain) return false;
+    const std::vector<Part> replaced(begin, end);
+    m_budget.left = r.gain + ofClasses(replaced) + m_rounding;
+    if (!evaluate(r, parts) || r.gain - moreOfClasses(replaced, parts) < kLeastGain) return false;
     for (Part& part : parts) part.number = m_numbers++;
     m_parts.insert(m_parts.erase(begin, end), parts.begin(), parts.end());
     return true;
@@ -294,7 +299,6 @@ class Smoothing {
 
   /** What the classes of some parts cost more than those of others, meters. */
   double moreOfClasses(const std::vector<Part>& before, const std::vector<Part>& after) const {
-    constexpr Length kRounding = 20;
     std::vector<Length> more(m_perMeter.size());
     for (const Part& part : before)
       for (const auto& stretch : part.profile) more[stretch.classId] -= stretch.length;
@@ -307,7 +311,16 @@ class Smoothing {
     return price;
   }
 
-  bool evaluate(const Replacement& r, std::vector<Part>& parts) const {
+  /** What some parts cost for their classes, meters. */
+  double ofClasses(const std::vector<Part>& parts) const {
+    double price = 0;
+    for (const Part& part : parts)
+      for (const auto& stretch : part.profile)
+        price += m_perMeter[stretch.classId] * colored_graph::toMeters(stretch.length);
+    return price;
+  }
+
+  bool evaluate(const Replacement& r, std::vector<Part>& parts) {
     double z = m_checker.ground().centerOf(m_parts[r.before].z);
     for (Part& part : parts) {
       const auto begin = m_checker.place(part.arc.begin, z);
@@ -326,6 +339,8 @@ class Smoothing {
 
   const CollisionChecker& m_checker;
   const std::vector<double> m_perMeter;
+  ClassBudget m_budget;
+  double m_rounding = 0;  ///< what rounded lengths may cost, meters
   std::vector<Part> m_parts;
   std::set<std::tuple<int, int, std::size_t>> m_seen;
   int m_end = 0;  ///< key of the surface where the path ends

@@ -61,13 +61,13 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
 struct PlannerCore::Sliced {
   Sliced(PlannerCore& core, std::optional<PlanResult> rest)
       : ground(core.m_ground.frozen()),
-        checker(ground, core.m_options.vehicle, core.order(), core.m_options.reading),
-        task{checker, *core.m_startPose, *core.m_goalPose, std::move(rest)},
+        task{CollisionChecker(ground, core.m_options.vehicle, core.order(), core.m_options.reading)
+                 .forSearch(),
+             *core.m_startPose, *core.m_goalPose, std::move(rest)},
         slices([this, &core] { solution = core.solve(task, clock); }) {}
 
   StageClock clock;
   const Ground ground;
-  const CollisionChecker checker;
   const Task task;
   std::vector<Column> changed;  ///< tiles of the ground, since it began
   Solution solution;
@@ -181,7 +181,7 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   checkFinite("goal", goal);
   const Change change(*this);
   if (const auto refused = prepare(start, goal, clock)) return *refused;
-  return take(solve({m_checker, *m_startPose, *m_goalPose, {}}, clock), clock);
+  return take(solve({m_checker.forSearch(), *m_startPose, *m_goalPose, {}}, clock), clock);
 }
 
 void PlannerCore::standAt(const Place& start) {
@@ -342,7 +342,7 @@ PlanResult PlannerCore::replan(const Place& start) {
   checkReplan(start);
   const Change change(*this);
   if (const auto known = prepareAgain(start, rest)) return *known;
-  return take(solve({m_checker, *m_startPose, *m_goalPose, rest}, clock), clock);
+  return take(solve({m_checker.forSearch(), *m_startPose, *m_goalPose, rest}, clock), clock);
 }
 
 PlannerCore::~PlannerCore() = default;
@@ -355,7 +355,7 @@ void PlannerCore::begin(const Place& start, const std::optional<Place>& goal) {
   const Change change(*this);
   m_known = goal ? prepare(start, *goal, clock) : prepareAgain(start, rest);
   if (!m_known && mayNeedRoadmap(m_options))
-    m_known = take(solve({m_checker, *m_startPose, *m_goalPose, rest}, clock), clock);
+    m_known = take(solve({m_checker.forSearch(), *m_startPose, *m_goalPose, rest}, clock), clock);
   if (!m_known) m_sliced = std::make_unique<Sliced>(*this, std::move(rest));
 }
 

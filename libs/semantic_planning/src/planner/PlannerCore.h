@@ -94,7 +94,7 @@ class PlannerCore {
   void moveEnds(Roadmap& map);
   bool isCancelled() const { return m_options.cancelled && m_options.cancelled(); }
   struct Task {
-    const CollisionChecker& checker;
+    CollisionChecker checker;  ///< of this search
     GroundPose start, goal;
     std::optional<PlanResult> rest;  ///< of the path that is kept
   };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "ClassPrices.h"
@@ -88,9 +89,9 @@ class RelaxedSearch {
   Cost bound(Column c) const { return kWeightOfLength * stepsBetween(c, m_goal.column); }
 
   void noteNearest(Column c, RelaxedPath& guide) {
-    const double far = std::hypot(c.x - m_goal.column.x, c.y - m_goal.column.y);
-    if (guide.nearest && far >= m_nearest) return;
-    m_nearest = far;
+    const std::int64_t x = c.x - m_goal.column.x, y = c.y - m_goal.column.y;
+    if (x * x + y * y >= m_nearest) return;
+    m_nearest = x * x + y * y;
     guide.nearest = {m_checker.ground().centerOf(c.x), m_checker.ground().centerOf(c.y)};
   }
 
@@ -120,7 +121,8 @@ class RelaxedSearch {
   const std::vector<Cost> m_weights;                       ///< of a length, by rank
   MonotoneQueue<Cell> m_queue;
   Place m_goal;
-  double m_nearest = 0;  ///< columns from the goal
+  /** Columns from the goal, squared. */
+  std::int64_t m_nearest = std::numeric_limits<std::int64_t>::max();
 };
 
 }  // namespace
@@ -128,7 +130,9 @@ class RelaxedSearch {
 RelaxedField::RelaxedField(const CollisionChecker& checker)
     : m_checker(checker),
       m_surfaces(checker.ground().layers().surfaces()),
-      m_labels(m_surfaces.size()) {
+      m_tiles(m_surfaces.size()) {
+  for (std::size_t i = 0; i < m_tiles.size(); ++i)
+    m_tiles[i].surfaces = m_surfaces.at(static_cast<std::int32_t>(i));
   for (std::size_t step = 0; step < kSteps.size(); ++step)
     for (const double y : checker.wheels()) m_wheels[step].push_back(turned(0, y, step));
 }

@@ -19,7 +19,7 @@
 
 namespace semantic_planning {
 
-/** Hands out what has the least key, and of that the least value; no key may be less than the last
+/** Hands out what has the least key, and of that what came last; no key may be less than the last
  * one that it handed out. Keys that differ from that in the same highest bit share a bucket, which
  * is dealt out when its turn comes (the radix heap of Ahuja et al., "Faster algorithms for the
  * shortest path problem", 1990): that touches less memory than a binary heap. */
@@ -32,16 +32,14 @@ class MonotoneQueue {
   bool empty() const { return m_size == 0; }
   void push(Key key, const Value& value) {
     m_buckets[bucketOf(key)].emplace_back(key, value);
-    if (key == m_last) std::push_heap(m_buckets[0].begin(), m_buckets[0].end(), IsAfter());
     ++m_size;
   }
   const Entry& top() {
     deal();
-    return m_buckets[0].front();
+    return m_buckets[0].back();
   }
   Entry pop() {
     deal();
-    std::pop_heap(m_buckets[0].begin(), m_buckets[0].end(), IsAfter());
     const Entry entry = m_buckets[0].back();
     m_buckets[0].pop_back();
     --m_size;
@@ -49,10 +47,6 @@ class MonotoneQueue {
   }
 
  private:
-  struct IsAfter {
-    bool operator()(const Entry& a, const Entry& b) const { return b.second < a.second; }
-  };
-
   std::size_t bucketOf(Key key) const {
     const auto differs = static_cast<std::uint64_t>(key ^ m_last);
     return differs == 0 ? 0 : 64 - static_cast<std::size_t>(__builtin_clzll(differs));
@@ -68,7 +62,6 @@ class MonotoneQueue {
              })->first;
     for (const Entry& e : *bucket) m_buckets[bucketOf(e.first)].push_back(e);
     bucket->clear();
-    std::make_heap(m_buckets[0].begin(), m_buckets[0].end(), IsAfter());
   }
 
   std::array<std::vector<Entry>, 65> m_buckets;  ///< by the highest bit that differs; 0: none
@@ -134,10 +127,15 @@ class RelaxedField {
   colored_graph::Rank rankAt(const Place& at, std::size_t step) const;
 
  private:
+  struct Tile {
+    const SurfaceTile* surfaces;      ///< null: none
+    std::unique_ptr<Label[]> labels;  ///< of its surfaces; null: none is reached
+  };
+
   const CollisionChecker& m_checker;
   const SurfaceGrid& m_surfaces;
   std::array<std::vector<Column>, kSteps.size()> m_wheels;  ///< by step
-  std::vector<std::unique_ptr<Label[]>> m_labels;  ///< by tile, of its surfaces; null: none reached
+  std::vector<Tile> m_tiles;                                ///< by number
 };
 
 inline const Surface* RelaxedField::near(Column c, int z, int tolerance) const {
@@ -146,7 +144,8 @@ inline const Surface* RelaxedField::near(Column c, int z, int tolerance) const {
 
 inline RelaxedField::Place RelaxedField::placeNear(Column c, int z, int tolerance) const {
   const std::int32_t number = m_surfaces.numberOf(tileOf(c));
-  const SurfaceTile* const tile = number == SurfaceGrid::kNoTile ? nullptr : m_surfaces.at(number);
+  if (number == SurfaceGrid::kNoTile) return {};
+  const SurfaceTile* const tile = m_tiles[static_cast<std::size_t>(number)].surfaces;
   if (!tile) return {};
   const int column = indexInTile(c);
   const Surface* best = nullptr;
@@ -163,14 +162,14 @@ inline RelaxedField::Place RelaxedField::placeNear(Column c, int z, int toleranc
 inline RelaxedField::Place RelaxedField::placeOf(const Cell& cell) const {
   const Column low = firstColumnOf(m_surfaces.tileOfNumber(cell.tile));
   return {{low.x + cell.column % kTileEdge, low.y + cell.column / kTileEdge},
-          &m_surfaces.at(cell.tile)->surfaces[cell.index],
+          &m_tiles[static_cast<std::size_t>(cell.tile)].surfaces->surfaces[cell.index],
           cell};
 }
 
 inline RelaxedField::Label& RelaxedField::label(const Cell& cell) {
-  std::unique_ptr<Label[]>& labels = m_labels[static_cast<std::size_t>(cell.tile)];
-  if (!labels) labels = std::make_unique<Label[]>(m_surfaces.at(cell.tile)->surfaces.size());
-  return labels[cell.index];
+  Tile& tile = m_tiles[static_cast<std::size_t>(cell.tile)];
+  if (!tile.labels) tile.labels = std::make_unique<Label[]>(tile.surfaces->surfaces.size());
+  return tile.labels[cell.index];
 }
 
 /** The least that the rest of a way may cost from the ground around a place on, for a vehicle that

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "ground/GroundTiles.h"
+#include "ground/OpenGround.h"
 #include "vehicle/CurveWalk.h"
 
 namespace semantic_planning {
@@ -80,9 +82,9 @@ class CollisionChecker::Sweep {
       : m_checker(checker),
         m_z(z),
         m_column(checker.m_ground.columnAt(begin.x, begin.y)),
-        m_discs(discsOfThread()) {
-    m_discs.clear();
-    for (const CheckedDisc& d : checker.m_discs) m_discs.push_back(at(d, begin));
+        m_discs(discsOfThread()),
+        m_last(begin) {
+    placeDiscs();
   }
 
   int z() const { return m_z; }
@@ -91,19 +93,35 @@ class CollisionChecker::Sweep {
     const Ground& ground = m_checker.m_ground;
     const Column column = ground.columnAt(placed.x, placed.y);
     bool climbs = false;
+    const bool wasFree = m_room.ofDiscs > 0;
     if (!(column == m_column)) {
       const Surface* s = m_checker.near(column, m_z, ground.step());
       if (!s) return false;
       climbs = s->z != m_z;
       m_z = s->z;
       m_column = column;
+      if (m_checker.m_open) m_room = m_checker.m_open->around(column);
+      if (m_room.ofClass > 0) m_worst = s->classId, m_worstZ = INT_MIN;
     }
+    if (wasFree && m_room.ofDiscs == 0) placeDiscs();
+    m_last = placed;
+    if (m_room.ofDiscs > 0) return true;
     for (std::size_t i = 0; i < m_discs.size(); ++i)
       if (!move(m_checker.m_discs[i], placed, climbs, m_discs[i])) return false;
     return true;
   }
 
+  /** How far it may be driven from where it is so that it is free and over the same class, meters.
+   */
+  double room() const {
+    return (std::min(m_room.ofDiscs, m_room.ofClass) - 1) * m_checker.m_ground.voxelSize();
+  }
+
   bool addClasses(const Placement& placed, double length, Lengths& lengths) {
+    if (m_room.ofClass > 0) {
+      lengths[*m_worst] += length;
+      return true;
+    }
     if (m_checker.m_reading.kind == ClassReading::Kind::Expected)
       return m_checker.addExpected(placed, m_z, length, lengths);
     const WheelColumns wheels = m_checker.wheelColumns(placed);
@@ -130,9 +148,13 @@ class CollisionChecker::Sweep {
     return discs;
   }
 
-  At at(const CheckedDisc& d, const Placement& placed) const {
-    const auto [x, y] = placed(d.disc.x, d.disc.y);
-    return {x, y, m_checker.m_ground.columnAt(x, y)};
+  /** Where they were last. */
+  void placeDiscs() {
+    m_discs.clear();
+    for (const CheckedDisc& d : m_checker.m_discs) {
+      const auto [x, y] = m_last(d.disc.x, d.disc.y);
+      m_discs.push_back({x, y, m_checker.m_ground.columnAt(x, y)});
+    }
   }
 
   bool move(const CheckedDisc& d, const Placement& placed, bool climbs, At& disc) {
@@ -154,6 +176,8 @@ class CollisionChecker::Sweep {
   int m_z;
   Column m_column;
   std::vector<At>& m_discs;
+  Placement m_last;
+  OpenGround::Room m_room;  ///< where it has some, the discs' places are not known
   WheelColumns m_wheels;
   std::optional<ClassId> m_worst;  ///< under the wheels, when they were there and at this height:
   int m_worstZ = 0;
@@ -191,6 +215,21 @@ CollisionChecker::CollisionChecker(const Ground& ground, const VehicleOptions& v
                  ? std::vector<double>{0}
                  : std::vector<double>{-vehicle.wheelTrack / 2, vehicle.wheelTrack / 2};
   m_wheelTolerance = tolerance(vehicle.wheelTrack / 2);
+}
+
+CollisionChecker CollisionChecker::forSearch() const {
+  constexpr int kMostReach = 12;  // columns: hardly any ground is open to long vehicles
+  CollisionChecker checker(*this);
+  // Another column where places are in two of them, another one for what discs come through at
+  // corners.
+  const int discs = static_cast<int>(m_reach / m_ground.voxelSize());
+  const int wheels = static_cast<int>(m_wheels.back() / m_ground.voxelSize()) + 1;
+  int needed2 = 0;
+  for (const CheckedDisc& d : m_discs) needed2 = std::max(needed2, d.needed2);
+  if (m_reading.kind == ClassReading::Kind::Likeliest && discs <= kMostReach)
+    checker.m_open =
+        std::make_shared<OpenGround>(m_ground, OpenGround::Reach{discs, wheels}, needed2);
+  return checker;
 }
 
 std::optional<GroundPose> CollisionChecker::place(const TPose2D& pose,
@@ -297,9 +336,14 @@ std::optional<EdgeProfile> CollisionChecker::profile(const ReedsSheppCurve& curv
   lengths.assign(static_cast<std::size_t>(m_order.classes()), 0);
   Sweep sweep(*this, Placement(curve.from()), from);
   const auto fits = [&](const Placement& placed) { return sweep.moveTo(placed); };
-  const auto counts = [&](const Placement& placed) {
-    return sweep.moveTo(placed) && sweep.addClasses(placed, piece, lengths) &&
-           (!budget || pay(*budget, sweep.worst(), piece));
+  const auto counts = [&](const Placement& placed, int left) {
+    if (!sweep.moveTo(placed)) return 0;
+    const int pieces = std::clamp(static_cast<int>(sweep.room() / piece), 1, left);
+    for (int i = 0; i < pieces; ++i)
+      if (!sweep.addClasses(placed, piece, lengths) ||
+          (budget && !pay(*budget, sweep.worst(), piece)))
+        return 0;
+    return pieces;
   };
   const bool isFree = walkCurve(curve, n, counts, fits);
   if (!isFree) return std::nullopt;

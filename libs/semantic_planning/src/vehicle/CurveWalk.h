@@ -43,21 +43,24 @@ class SegmentWalk {
     return p;
   }
 
-  /** f(placement) in the middle of pieces `first` to `end` - 1 of a curve,
-   * until f returns false. \param before what the curve has of length before
-   * this segment */
+  /** f(placement, how many pieces are left) in the middle of pieces `first` to `end` - 1 of a
+   * curve; f returns how many pieces to go on by, at most those that are left, or 0: no farther.
+   * \param before what the curve has of length before this segment \return whether it came to
+   * its end */
   template <class F>
   bool visit(int first, int end, double piece, double before, F f) const {
     const auto middle = [&](int i) { return at((i + 0.5) * piece - before); };
-    if (m_radius == 0) {
-      for (int i = first; i < end; ++i)
-        if (!f(middle(i))) return false;
-      return true;
-    }
-    const Rotation turn(m_gear * piece / m_radius);
+    const Rotation turn(m_radius == 0 ? 0 : m_gear * piece / m_radius);
     Placement p = middle(first);
-    for (int i = first; i < end; ++i, p = turned(p, turn))
-      if (!f(p)) return false;
+    while (first < end) {
+      const int pieces = f(p, end - first);
+      if (pieces == 0) return false;
+      first += pieces;
+      if (m_radius == 0)
+        p = middle(first);
+      else
+        for (int i = 0; i < pieces; ++i) p = turned(p, turn);
+    }
     return true;
   }
 
@@ -76,9 +79,10 @@ class SegmentWalk {
   const double m_gear, m_radius;  ///< radius: positive to the left, 0: straight
 };
 
-/** Goes along a curve: atMiddle(placement) in the middle of each of as many pieces, all as long as
- * each other, and atEnd(placement) where its segments end; until one of them returns false: then
- * false. Computes sines for segments, not for pieces. */
+/** Goes along a curve: atMiddle(placement, pieces left) in the middle of as many pieces, all as
+ * long as each other, and atEnd(placement) where its segments end; until one of them returns false:
+ * then false. atMiddle returns how many pieces to go on by, see SegmentWalk::visit(). Computes
+ * sines for segments, not for pieces. */
 template <class AtMiddle, class AtEnd>
 bool walkCurve(const ReedsSheppCurve& curve, int pieces, AtMiddle atMiddle, AtEnd atEnd) {
   const double piece = curve.length() / pieces;
@@ -97,7 +101,7 @@ bool walkCurve(const ReedsSheppCurve& curve, int pieces, AtMiddle atMiddle, AtEn
     first = std::max(first, end);
   }
   for (; first < pieces; ++first)
-    if (!atMiddle(place)) return false;
+    if (!atMiddle(place, 1)) return false;
   return true;
 }
 

@@ -8,12 +8,14 @@
 #include <semantic_planning/vehicle/ReedsShepp.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace semantic_planning {
 
 struct Placement;
+class OpenGround;
 
 /** A pose on the ground. */
 struct GroundPose {
@@ -50,6 +52,10 @@ class CollisionChecker {
   /** \param ground must outlive the checker. \throw std::invalid_argument bad options. */
   CollisionChecker(const Ground& ground, const VehicleOptions& vehicle,
                    const colored_graph::ClassOrder& order, const ClassReading& reading);
+
+  /** One for a search: the same answers, sooner, for it keeps what it finds out about the ground.
+   * For one thread, and as long as the ground stays as it is. */
+  CollisionChecker forSearch() const;
 
   const Ground& ground() const { return m_ground; }
   const ReedsShepp& reedsShepp() const { return m_reedsShepp; }
@@ -110,6 +116,7 @@ class CollisionChecker {
   std::vector<double> m_wheels;  ///< y in the vehicle's frame
   int m_wheelTolerance;
   double m_reach;
+  std::shared_ptr<OpenGround> m_open;  ///< of a search
 };
 
 }  // namespace semantic_planning

@@ -1,0 +1,43 @@
+#pragma once
+#include <semantic_planning/ground/Ground.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace semantic_planning {
+
+/** Where a vehicle is free whatever its heading, and where its wheels are over one class: there its
+ * discs and wheels need not be looked at one by one. Found tile by tile when it is asked for, and
+ * kept: for as long as the ground stays as it is. */
+class OpenGround {
+ public:
+  /** By how many columns an origin is away, along x or y, from the nearest one where that does not
+   * hold; at most kFarthest, 0: here. Where it does there is one surface in each column. */
+  struct Room {
+    std::uint8_t ofDiscs = 0, ofClass = 0;
+  };
+  /** Columns from the vehicle's origin that its discs or wheels come to. */
+  struct Reach {
+    int ofDiscs, ofWheels;
+  };
+
+  /** \param needed2 what the surfaces below discs need (Surface::clearance2) */
+  OpenGround(const Ground& ground, const Reach& reach, int needed2);
+
+  Room around(Column c);
+
+ private:
+  static constexpr int kFarthest = 8;
+  using Rooms = std::array<Room, kTileColumns>;
+
+  Rooms find(Column tile) const;
+
+  const Ground& m_ground;
+  const Reach m_reach;
+  const int m_needed2;
+  std::vector<std::unique_ptr<Rooms>> m_tiles;  ///< by number; null: not found yet
+};
+
+}  // namespace semantic_planning
