@@ -199,8 +199,7 @@ Summary convertPointFiles(const std::vector<fs::path>& files, const std::string&
     if (!output.wants(i, files.size())) continue;
     const auto points = labeled_cloud::readPointFile(files[i], conversion.labels ? labelField : "");
     const auto time = mrpt::Clock::fromDouble(static_cast<double>(i));
-    const mrpt::math::CMatrixDouble44 pose(points.T_file_sensor.matrix());
-    output.writePose(time, mrpt::poses::CPose3D(pose));
+    output.writePose(time, labeled_cloud::toMrpt(points.T_file_sensor));
     output.writeCloud(time, "pcd", cloudOf(points, files[i], table));
   }
   return output.finish();

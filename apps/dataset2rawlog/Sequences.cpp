@@ -169,15 +169,10 @@ Summary convertTumSequence(const fs::path& folder, const Conversion& conversion)
   return output.finish();
 }
 
-using semantic_types::ClassTable;
 using semantic_types::LabeledCloud;
 using strict_files::numbersOf;
-using strict_files::readLines;
-using strict_files::TextLine;
 
 namespace {
-
-namespace fs = std::filesystem;
 
 using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
 
@@ -207,8 +202,7 @@ class KittiCamera {
     const Eigen::Isometry3d T_camera2_lidar =
         Eigen::Translation3d(K.inverse() * P.col(3)) * T_camera0_lidar;
     m_observation.sensorLabel = "image_2";
-    m_observation.cameraPose =
-        mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_camera2_lidar.inverse().matrix()));
+    m_observation.cameraPose = labeled_cloud::toMrpt(T_camera2_lidar.inverse());
     m_observation.cameraParams.setIntrinsicParamsFromValues(K(0, 0), K(1, 1), K(0, 2), K(1, 2));
   }
 
@@ -312,7 +306,7 @@ Summary convertSemanticKitti(const fs::path& sequence, const Conversion& convers
     const auto time = timeOf(numbersOf(times[i], 1)[0], times[i]);
     const Eigen::Isometry3d T_map_lidar = Tr.inverse() * poses::poseOfMatrix(lines[i]) * Tr;
     const std::string name = sixDigits(i);
-    output.writePose(time, mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_map_lidar.matrix())));
+    output.writePose(time, labeled_cloud::toMrpt(T_map_lidar));
     if (camera) output.writeOther(camera->observe(name, time));
     LabeledCloud cloud = readPoints(sequence / "velodyne" / (name + ".bin"));
     if (conversion.labels) readLabels(sequence / "labels" / (name + ".label"), table, cloud);

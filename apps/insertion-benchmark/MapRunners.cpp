@@ -1,3 +1,4 @@
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/maps/COctoMap.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservationPointCloud.h>
@@ -7,7 +8,9 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "Runner.h"
@@ -30,110 +33,72 @@ octomap::point3d sensorOf(const PosedScan& scan) {
   return {t.x(), t.y(), t.z()};
 }
 
-/** OctoMap as its users call it; the points are in the world's frame already. */
-template <typename Tree>
-class OctomapRunner : public Runner {
- public:
-  OctomapRunner(const Scene& scene, const Settings& settings, bool discretize)
-      : m_scene(scene),
-        m_maxRange(settings.maxRange > 0 ? settings.maxRange : -1),
-        m_discretize(discretize),
-        m_tree(settings.resolution) {
-    for (const PosedScan& scan : scene.scans) m_clouds.push_back(worldPoints(scan));
-  }
-  void insert(std::size_t scan) override {
-    m_tree.insertPointCloud(m_clouds[scan], sensorOf(m_scene.scans[scan]), m_maxRange, false,
-                            m_discretize);
-  }
+/** OctoMap as its users call it; the points are in the world's frame already.
+ * \param color also averages one into each voxel that is hit */
+template <typename Tree, bool discretize, bool color = false>
+Runner octomapRunner(const Scene& scene, const Settings& settings) {
+  const auto tree = std::make_shared<Tree>(settings.resolution);
+  std::vector<octomap::Pointcloud> clouds;
+  for (const PosedScan& scan : scene.scans) clouds.push_back(worldPoints(scan));
+  const double maxRange = settings.maxRange > 0 ? settings.maxRange : -1;
+  return {[=, &scene, clouds = std::move(clouds)](std::size_t scan) {
+    const octomap::point3d sensor = sensorOf(scene.scans[scan]);
+    tree->insertPointCloud(clouds[scan], sensor, maxRange, false, discretize);
+    if constexpr (color)
+      for (std::size_t i = 0; i < clouds[scan].size(); ++i) {
+        const octomap::point3d& p = clouds[scan][i];
+        if (maxRange > 0 && (p - sensor).norm() > maxRange) continue;
+        const std::uint8_t id = scene.scans[scan].cloud.classes[i];
+        tree->averageNodeColor(p.x(), p.y(), p.z(), id, static_cast<std::uint8_t>(10 * id), 255);
+      }
+  }};
+}
 
- protected:
-  const Scene& m_scene;
-  double m_maxRange;
-  bool m_discretize;
-  Tree m_tree;
-  std::vector<octomap::Pointcloud> m_clouds;
-};
-
-/** Also averages a color into each voxel that is hit. */
-class ColorRunner : public OctomapRunner<octomap::ColorOcTree> {
- public:
-  using OctomapRunner::OctomapRunner;
-  void insert(std::size_t scan) override {
-    OctomapRunner::insert(scan);
-    const octomap::point3d sensor = sensorOf(m_scene.scans[scan]);
-    for (std::size_t i = 0; i < m_clouds[scan].size(); ++i) {
-      const octomap::point3d& p = m_clouds[scan][i];
-      if (m_maxRange > 0 && (p - sensor).norm() > m_maxRange) continue;
-      const std::uint8_t id = m_scene.scans[scan].cloud.classes[i];
-      m_tree.averageNodeColor(p.x(), p.y(), p.z(), id, static_cast<std::uint8_t>(10 * id), 255);
-    }
+Runner mrptRunner(const Scene& scene, const Settings& settings) {
+  const auto map = std::make_shared<mrpt::maps::COctoMap>(settings.resolution);
+  map->insertionOptions.maxrange = settings.maxRange > 0 ? settings.maxRange : -1;
+  std::vector<std::pair<mrpt::obs::CObservationPointCloud, mrpt::poses::CPose3D>> scans;
+  for (const PosedScan& scan : scene.scans) {
+    const auto points = mrpt::maps::CSimplePointsMap::Create();
+    for (const Eigen::Vector3f& p : scan.cloud.points) points->insertPoint(p.x(), p.y(), p.z());
+    auto& [observation, pose] = scans.emplace_back();
+    observation.pointcloud = points;
+    pose = labeled_cloud::toMrpt(scan.T_map_sensor);
   }
-};
+  return {[map, scans = std::move(scans)](std::size_t scan) {
+    map->insertObservation(scans[scan].first, scans[scan].second);
+  }};
+}
 
-class MrptRunner : public Runner {
- public:
-  MrptRunner(const Scene& scene, const Settings& settings) : m_map(settings.resolution) {
-    m_map.insertionOptions.maxrange = settings.maxRange > 0 ? settings.maxRange : -1;
-    for (const PosedScan& scan : scene.scans) {
-      const auto points = mrpt::maps::CSimplePointsMap::Create();
-      for (const Eigen::Vector3f& p : scan.cloud.points) points->insertPoint(p.x(), p.y(), p.z());
-      mrpt::obs::CObservationPointCloud& observation = m_observations.emplace_back();
-      observation.pointcloud = points;
-      const Eigen::Matrix4d m = scan.T_map_sensor.matrix();
-      m_poses.emplace_back(mrpt::math::CMatrixDouble44(m));
-    }
+/** Every other class is relevant, the others between are not. */
+semantic_octree::AbstractionOptions abstractionOf(int terms, int numClasses) {
+  semantic_octree::AbstractionOptions options;
+  for (int i = 0; i < std::min(terms, numClasses); ++i) {
+    const std::string name = "class " + std::to_string(i + 1);
+    options.weights.terms.push_back(i % 2 == 0 ? tree_abstraction::relevant(name, 1.0, {i + 1})
+                                               : tree_abstraction::irrelevant(name, 0.3, {i + 1}));
   }
-  void insert(std::size_t scan) override {
-    m_map.insertObservation(m_observations[scan], m_poses[scan]);
-  }
+  return options;
+}
 
- private:
-  mrpt::maps::COctoMap m_map;
-  std::vector<mrpt::obs::CObservationPointCloud> m_observations;
-  std::vector<mrpt::poses::CPose3D> m_poses;
-};
-
-using semantic_octree::SemanticOcTree;
-
-class OurRunner : public Runner {
- public:
-  OurRunner(const Scene& scene, const Settings& settings, bool withAbstraction)
-      : m_scene(scene), m_map(settings.resolution, classes(scene.numClasses)) {
-    m_options.maxRange = settings.maxRange;
-    m_options.rays = settings.rays;
-    m_options.threads = settings.threads;
-    if (withAbstraction) setAbstraction(m_map, abstraction(settings.terms, scene.numClasses));
-  }
-  void insert(std::size_t scan) override {
-    m_map.insert(m_scene.scans[scan].cloud, m_scene.scans[scan].T_map_sensor, m_options);
-  }
-
- private:
-  static semantic_types::ClassTable classes(int numClasses) {
-    semantic_types::ClassTable table;
-    for (int id = 1; id <= numClasses; ++id) table.add("class " + std::to_string(id), {});
-    return table;
-  }
-  /** Every other class is relevant, the others between are not. */
-  static semantic_octree::AbstractionOptions abstraction(int terms, int numClasses) {
-    semantic_octree::AbstractionOptions options;
-    for (int i = 0; i < std::min(terms, numClasses); ++i) {
-      const std::string name = "class " + std::to_string(i + 1);
-      options.weights.terms.push_back(i % 2 == 0
-                                          ? tree_abstraction::relevant(name, 1.0, {i + 1})
-                                          : tree_abstraction::irrelevant(name, 0.3, {i + 1}));
-    }
-    return options;
-  }
-
-  const Scene& m_scene;
-  SemanticOcTree m_map;
-  semantic_octree::InsertionOptions m_options;
-};
+template <bool withAbstraction>
+Runner ourRunner(const Scene& scene, const Settings& settings) {
+  semantic_types::ClassTable classes;
+  for (int id = 1; id <= scene.numClasses; ++id) classes.add("class " + std::to_string(id), {});
+  const auto map = std::make_shared<semantic_octree::SemanticOcTree>(settings.resolution, classes);
+  if (withAbstraction) setAbstraction(*map, abstractionOf(settings.terms, scene.numClasses));
+  semantic_octree::InsertionOptions options;
+  options.maxRange = settings.maxRange;
+  options.rays = settings.rays;
+  options.threads = settings.threads;
+  return {[map, options, &scene](std::size_t scan) {
+    map->insert(scene.scans[scan].cloud, scene.scans[scan].T_map_sensor, options);
+  }};
+}
 
 /** The bare work of following all beams: an incremental traversal (Amanatides and Woo) that counts
  * in one byte per voxel of a dense array, in single precision and with the beams' ends known. */
-class DenseTraversal : public Runner {
+class DenseTraversal {
  public:
   DenseTraversal(const Scene& scene, const Settings& settings) {
     Eigen::Array3f lowest = Eigen::Array3f::Constant(1e9f), highest = -lowest;
@@ -159,7 +124,7 @@ class DenseTraversal : public Runner {
     }
   }
 
-  void insert(std::size_t scan) override {
+  void insert(std::size_t scan) {
     const Beams& beams = m_beams[scan];
     for (const End& end : beams.ends) {
       const std::ptrdiff_t last = traverse(beams.origin, end.position);
@@ -167,7 +132,7 @@ class DenseTraversal : public Runner {
     }
   }
 
-  std::size_t touchedVoxels() const override {
+  std::size_t touchedVoxels() const {
     return m_counts.size() - std::count(m_counts.begin(), m_counts.end(), 0);
   }
 
@@ -236,22 +201,23 @@ class DenseTraversal : public Runner {
   std::vector<std::uint8_t> m_counts;
 };
 
-template <class R, bool... more>
-std::unique_ptr<Runner> make(const Scene& scene, const Settings& settings) {
-  return std::make_unique<R>(scene, settings, more...);
+Runner traversalRunner(const Scene& scene, const Settings& settings) {
+  const auto traversal = std::make_shared<DenseTraversal>(scene, settings);
+  return {[traversal](std::size_t scan) { traversal->insert(scan); },
+          [traversal] { return traversal->touchedVoxels(); }};
 }
 
 }  // namespace
 
 const std::vector<std::pair<std::string, MakeRunner>>& runners() {
   static const std::vector<std::pair<std::string, MakeRunner>> runners = {
-      {kTraversal, make<DenseTraversal>},
-      {"semantic_octree", make<OurRunner, false>},
-      {kReference, make<OurRunner, true>},
-      {"octomap::OcTree", make<OctomapRunner<octomap::OcTree>, false>},
-      {"octomap::OcTree, discretized", make<OctomapRunner<octomap::OcTree>, true>},
-      {"octomap::ColorOcTree", make<ColorRunner, false>},
-      {"mrpt::maps::COctoMap", make<MrptRunner>}};
+      {kTraversal, traversalRunner},
+      {"semantic_octree", ourRunner<false>},
+      {"semantic_octree with G", ourRunner<true>},
+      {"octomap::OcTree", octomapRunner<octomap::OcTree, false>},
+      {"octomap::OcTree, discretized", octomapRunner<octomap::OcTree, true>},
+      {"octomap::ColorOcTree", octomapRunner<octomap::ColorOcTree, false, true>},
+      {"mrpt::maps::COctoMap", mrptRunner}};
   return runners;
 }
 

@@ -3,7 +3,7 @@
 #include <semantic_types/LabeledCloud.h>
 
 #include <Eigen/Geometry>
-#include <memory>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,19 +28,17 @@ struct Settings {
 };
 
 /** Something that scans are inserted into. */
-class Runner {
- public:
-  virtual ~Runner() = default;
-  /** The i-th scan of the scene: this is timed. The constructor, which may bring the scans into a
-   * form of its own, is not. */
-  virtual void insert(std::size_t scan) = 0;
+struct Runner {
+  /** Inserts the i-th scan of the scene: this is timed. Making a runner, which may bring the scans
+   * into a form of its own, is not. */
+  std::function<void(std::size_t scan)> insert;
   /** Voxels that were touched, if this is known. */
-  virtual std::size_t touchedVoxels() const { return 0; }
+  std::function<std::size_t()> touchedVoxels = [] { return 0; };
 };
 
-using MakeRunner = std::unique_ptr<Runner> (*)(const Scene& scene, const Settings& settings);
+/** The scene outlives the runner. */
+using MakeRunner = Runner (*)(const Scene& scene, const Settings& settings);
 
-constexpr const char* kReference = "semantic_octree with G";
 /** A byte array that beams are traced through: each voxel on the way is touched, nothing more. */
 constexpr const char* kTraversal = "bare traversal of all rays";
 

@@ -94,14 +94,14 @@ struct Figures {
 
 Figures takeTurn(MakeRunner make, const Scene& scene, const Settings& settings) {
   using namespace measuring;
-  const std::unique_ptr<Runner> runner = make(scene, settings);
+  const Runner runner = make(scene, settings);
   malloc_trim(0);
   const double before = memory("VmRSS");
   std::ofstream("/proc/self/clear_refs") << 5;  // the peak begins anew
   std::vector<double> cpu, wall;
   for (std::size_t i = 0; i < scene.scans.size(); ++i) {
     const Stopwatch processor(TimeOf::Process), clock;
-    runner->insert(i);
+    runner.insert(i);
     wall.push_back(clock.milliseconds());
     cpu.push_back(processor.milliseconds());
   }
@@ -110,7 +110,7 @@ Figures takeTurn(MakeRunner make, const Scene& scene, const Settings& settings) 
   malloc_trim(0);
   f.mapBytes = memory("VmRSS") - before;
   f.cpu = quantile(cpu, 0.5), f.cpu95 = quantile(cpu, 0.95), f.wall = quantile(wall, 0.5);
-  f.touchedVoxels = static_cast<double>(runner->touchedVoxels());
+  f.touchedVoxels = static_cast<double>(runner.touchedVoxels());
   return f;
 }
 

@@ -4,7 +4,6 @@
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
-#include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 
 #include <cmath>
@@ -183,9 +182,7 @@ int run(const Cli& cli) {
          "length [m],evaluation [ms],search [ms]\n";
   for (std::size_t i = 0; i < instances.size() && !stop.pending(); ++i)
     for (SemanticPlanner& planner : planners) writeRow(csv, i, instances[i], planner);
-  strict_files::StagedFile file(cli.output);
-  strict_files::writeText(file.path(), csv.str());
-  file.commit();
+  strict_files::writeText(cli.output, csv.str());
   return 0;
 }
 

@@ -81,7 +81,7 @@ Trajectory loadTrajectory(const fs::path& file, const std::vector<fs::path>& raw
   if (!hasMatrices(lines)) return labeled_cloud::loadTumTrajectory(file);
   std::vector<mrpt::poses::CPose3D> read;
   for (const TextLine& line : lines)
-    read.emplace_back(mrpt::math::CMatrixDouble44(poses::poseOfMatrix(line).matrix()));
+    read.push_back(labeled_cloud::toMrpt(poses::poseOfMatrix(line)));
   checkForward(read, file);
   const std::set<Trajectory::Time> times = timesOfScans(rawlogs);
   if (read.size() != times.size())

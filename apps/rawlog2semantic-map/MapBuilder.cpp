@@ -340,8 +340,7 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   semantic_slam::SensorScan seen{scan.cloud, labeled_cloud::toEigen(scan.T_robot_sensor)};
   seen.times = scan.times;
   const auto inserted = m_mapper->insert(seen, T_odometry_robot, m_seconds);
-  if (!m_hasOdometry)
-    T_map_robot = CPose3D(mrpt::math::CMatrixDouble44(inserted.place.T_map_robot.matrix()));
+  if (!m_hasOdometry) T_map_robot = labeled_cloud::toMrpt(inserted.place.T_map_robot);
   m_clock.note(scan.timestamp);
   const semantic_slam::Slam::Added& added = *inserted.place.added;
   m_placed.push_back(

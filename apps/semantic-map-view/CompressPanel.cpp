@@ -31,19 +31,10 @@ CompressPanel::CompressPanel(Viewer& viewer, fs::path weights)
     : m_viewer(viewer), m_weights(std::move(weights)) {
   auto* content = viewer.window().addPanel(ViewWindow::Side::Right, "Compress", kWidth)->content();
   m_on = content->add<nanogui::CheckBox>("show the compressed tree");
-  m_on->setCallback([this](bool on) { attempt([&] { switchOn(on); }); });
+  m_on->setCallback([this](bool on) { m_viewer.attempt([&] { switchOn(on); }); });
   m_controls = addColumn(content, 0, 4);
   viewer.onActivated([this] { forget(); });
   viewer.onFrame([this] { update(); });
-}
-
-template <class F>
-void CompressPanel::attempt(const F& f) {
-  try {
-    f();
-  } catch (const std::exception& e) {
-    m_viewer.complain(e);
-  }
 }
 
 void CompressPanel::begin() {
@@ -71,27 +62,23 @@ void CompressPanel::forget() {
 
 void CompressPanel::switchOn(bool on) {
   m_on->setChecked(on);
-  if (!on) return m_viewer.showFull();
+  if (!on) return m_viewer.showCompressed(nullptr);
   if (!m_live) {
     begin();
-    addControls();
+    addAlpha();
+    addWanted();
+    addTerms();
+    addSave();
   }
-  m_viewer.showCompressed(*m_live);
+  m_viewer.showCompressed(&*m_live);
   follow();
-}
-
-void CompressPanel::addControls() {
-  addAlpha();
-  addWanted();
-  addTerms();
-  addSave();
 }
 
 void CompressPanel::addAlpha() {
   auto* row = addRow(m_controls);
   addText(row, "alpha", 45);
   m_alpha = addSlider(row, 150, 0, 1, sliderOf(m_live->alpha()),
-                      [this](float at) { attempt([&] { setAlpha(alphaOf(at)); }); });
+                      [this](float at) { m_viewer.attempt([&] { setAlpha(alphaOf(at)); }); });
   m_alphaText = addText(row, "", 75);
 }
 
@@ -104,7 +91,7 @@ void CompressPanel::addWanted() {
     box->setFixedSize({90, 20});
     box->setMinValue(1);
     box->setTooltip("Wanted number of " + what);
-    box->setCallback([this, set](int n) { attempt([&] { set(std::size_t(n)); }); });
+    box->setCallback([this, set](int n) { m_viewer.attempt([&] { set(std::size_t(n)); }); });
     return box;
   };
   m_wantedLeaves = add(m_leaves, "leaves", [this](std::size_t n) { setLeaves(n); });
@@ -127,12 +114,15 @@ void CompressPanel::addTerms() {
     auto* row = addRow(terms, 4);
     addText(row, m_live->name(term), 92);
     TermLine& line = m_lines.back();
-    line.slider = addSlider(row, 80, m_live->mayBeIrrelevant(term) ? -2.f : 0.f, 2,
-                            float(m_live->weight(term)), [this, term](float w) {
-                              const double weight = std::round(w * 20) / 20;
-                              if (weight == m_live->weight(term)) return;
-                              attempt([&] { setWeight(term, weight); });
-                            });
+    addSlider(row, 80, m_live->mayBeIrrelevant(term) ? -2.f : 0.f, 2, float(m_live->weight(term)),
+              [this, term](float w) {
+                const double weight = std::round(w * 20) / 20;
+                if (weight == m_live->weight(term)) return;
+                m_viewer.attempt([&] {
+                  m_live->setWeight(term, weight);
+                  follow();
+                });
+              });
     line.weight = addText(row, "", 36);
     line.kept = addText(row, "", 46);
   }
@@ -140,7 +130,7 @@ void CompressPanel::addTerms() {
 
 void CompressPanel::addSave() {
   auto* save = addButton(m_controls, "save the weights", 120, [this] {
-    attempt([&] {
+    m_viewer.attempt([&] {
       m_viewer.say("wrote " + this->save(".").string() + ": " +
                    std::to_string(m_live->numLeaves()) + " leaves");
     });
@@ -176,11 +166,6 @@ void CompressPanel::setBytes(std::size_t bytes) {
   follow();
   m_viewer.say("at most " + std::to_string(bytes) +
                " bytes: " + std::to_string(m_live->numLeaves()) + " leaves");
-}
-
-void CompressPanel::setWeight(std::size_t term, double weight) {
-  m_live->setWeight(term, weight);
-  follow();
 }
 
 /** Map and numbers follow the compressed tree. */
@@ -233,7 +218,6 @@ fs::path CompressPanel::save(const fs::path& folder) const {
   return file;
 }
 
-using map_view::LiveCompression;
 using Balance = map_view::LiveCompression::Balance;
 
 namespace {

@@ -25,7 +25,6 @@ class CompressPanel {
   void setAlpha(double alpha);
   void setLeaves(std::size_t leaves);
   void setBytes(std::size_t bytes);
-  void setWeight(std::size_t term, double weight);
   /** Says at once what takes longer and is else said when the hand rests: what the tree retains,
    * and how many bytes its file has. */
   void measure();
@@ -39,7 +38,6 @@ class CompressPanel {
 
  private:
   struct TermLine {
-    nanogui::Slider* slider = nullptr;
     nanogui::Label *weight = nullptr, *kept = nullptr;
   };
   void begin();
@@ -48,16 +46,12 @@ class CompressPanel {
   void update();
   /** Says what is new. \param bytes of the file; 0: not known yet */
   void tell(std::size_t bytes);
-  void addControls();
   void addAlpha();
   void addWanted();
   bool isThere(std::size_t term) const;
   void addTerms();
   void addSave();
   void follow();
-  /** Reports an exception. */
-  template <class F>
-  void attempt(const F& f);
   float sliderOf(double alpha) const;
   double alphaOf(float slider) const;
 

@@ -140,13 +140,7 @@ void FilesPanel::want(const std::string& file) {
 }
 
 void FilesPanel::openWanted() {
-  for (const std::string& file : std::exchange(m_wanted, {})) {
-    try {
-      open(file);
-    } catch (const std::exception& e) {
-      m_viewer.complain(e);
-    }
-  }
+  for (const std::string& file : std::exchange(m_wanted, {})) m_viewer.attempt([&] { open(file); });
 }
 
 void FilesPanel::open(const std::string& file) {
@@ -172,12 +166,11 @@ void FilesPanel::open(const std::string& file) {
 void FilesPanel::listTracks() {
   removeChildren(m_list);
   for (std::size_t i = m_tracks.size(); i-- > 0;) {
-    auto* box = addCheckBox(m_list, m_tracks.track(i).name, kFilesWidth - 20);
-    box->setChecked(m_tracks.isShown(i));
-    box->setCallback([this, i](bool on) {
+    const auto show = [this, i](bool on) {
       m_tracks.setShown(i, on);
       m_viewer.say((on ? "shows " : "hides ") + m_tracks.track(i).name);
-    });
+    };
+    addCheckBox(m_list, m_tracks.track(i).name, kFilesWidth - 20, m_tracks.isShown(i), show);
   }
   m_list->parent()->setVisible(m_tracks.size() > 0);
 }

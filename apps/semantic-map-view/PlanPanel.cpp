@@ -162,16 +162,15 @@ void PlanPanel::addLine(const std::string& name, bool isAllowed, std::size_t ran
                         colored_graph::GraphClass id) {
   constexpr std::size_t kMostLetters = 32;
   auto* row = addRow(m_list);
-  auto* box = addCheckBox(row, name.substr(0, kMostLetters), kPlanWidth - 50);
-  box->setChecked(isAllowed);
-  box->setCallback([this, rank, id](bool on) {
+  const auto allow = [this, rank, id](bool on) {
     change([=](Ranks& ranks) {
       if (on)
         ranks.push_back({id});
       else
         ranks.erase(ranks.begin() + std::ptrdiff_t(rank));
     });
-  });
+  };
+  addCheckBox(row, name.substr(0, kMostLetters), kPlanWidth - 50, isAllowed, allow);
   if (!isAllowed || rank == 0) return;
   auto* up = row->add<nanogui::ToolButton>(ENTYPO_ICON_ARROW_UP);
   up->setFlags(nanogui::Button::NormalButton);

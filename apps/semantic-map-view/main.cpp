@@ -221,7 +221,7 @@ int run(const Cli& cli) {
     if (!cli.animation.empty()) animate(*window, panels.compress, cli.animation);
     return 0;
   }
-  window->run([] { return false; });
+  window->run();
   return 0;
 }
 

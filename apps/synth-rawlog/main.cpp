@@ -2,7 +2,6 @@
 #include <map_pictures/MapPictures.h>
 #include <mrpt/poses/CPose3D.h>
 #include <semantic_types/ClassTable.h>
-#include <strict_files/OutputFiles.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
@@ -13,7 +12,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -180,30 +178,14 @@ class WorldClasses {
   std::vector<ClassId> m_ids;  ///< by the world's
 };
 
-/** The robot's true poses in the format of the TUM data sets: time x y z qx qy qz qw. */
-class TrajectoryWriter {
- public:
-  explicit TrajectoryWriter(const std::filesystem::path& target)
-      : m_file(target), m_stream(m_file.path()) {
-    m_stream << "# time x y z qx qy qz qw (true poses of the robot)\n" << std::fixed;
-  }
-  void write(double time, const mrpt::poses::CPose3D& T) {
-    mrpt::math::CQuaternionDouble q;
-    T.getAsQuaternion(q);
-    m_stream << std::setprecision(6) << time << std::setprecision(9);
-    for (const double v : {T.x(), T.y(), T.z(), q.x(), q.y(), q.z(), q.r()}) m_stream << ' ' << v;
-    m_stream << '\n';
-  }
-  void commit() {
-    if (!m_stream.flush()) throw std::runtime_error(m_file.path().string() + ": cannot be written");
-    m_stream.close();
-    m_file.commit();
-  }
-
- private:
-  strict_files::StagedFile m_file;
-  std::ofstream m_stream;
-};
+/** A pose in the format of the TUM data sets: time x y z qx qy qz qw. */
+void writePose(std::ostream& out, double time, const mrpt::poses::CPose3D& T) {
+  mrpt::math::CQuaternionDouble q;
+  T.getAsQuaternion(q);
+  out << std::fixed << std::setprecision(6) << time << std::setprecision(9);
+  for (const double v : {T.x(), T.y(), T.z(), q.x(), q.y(), q.z(), q.r()}) out << ' ' << v;
+  out << '\n';
+}
 
 /** Writes which world the rawlog shows: scene, seed, hills and classes, in YAML. */
 void writeTruth(const Cli& cli, const WorldClasses& classes, int frames,
@@ -302,7 +284,8 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
       cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(drive.duration() * cli.rate));
   const auto walkers = walkersOn(scene.route, cli.people);
   DriveLog rawlog(cli.output, cli.odometry, cli.odometryNoise, cli.seed);
-  TrajectoryWriter trajectory(beside(cli.output, ".tum"));
+  std::ostringstream trajectory;
+  trajectory << "# time x y z qx qy qz qw (true poses of the robot)\n";
   std::optional<label_noise::LabelNoise> noise;
   if (cli.labelNoiseKind != label_noise::LabelNoise::Kind::Points)
     noise.emplace(cli.labelNoise, cli.labelNoiseKind, cli.seed, classes.table().size());
@@ -315,11 +298,11 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
     rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
                  sense(cli, classes, scene.world, drive, static_cast<std::uint64_t>(k),
                        noise ? &*noise : nullptr));
-    trajectory.write(kStartTime + time, toMrpt(T_world_robot));
+    writePose(trajectory, kStartTime + time, toMrpt(T_world_robot));
   }
   scene.world.setMovables({});
   rawlog.finish();
-  trajectory.commit();
+  strict_files::writeText(beside(cli.output, ".tum"), trajectory.str());
   writeTruth(cli, classes, k, beside(cli.output, ".truth.yaml"));
   notes() << cli.output.string() << ": " << k << " frames of " << cli.scene << ", "
           << cli.speed * k / cli.rate << " m of way\n";

@@ -62,21 +62,17 @@ class SemanticMapView : public FolderTest {
   }
 
   /** Works with the window from above, in steps of view-window.sh. \return what it said */
-  std::string work(const std::vector<std::string>& arguments,
-                   const std::vector<std::string>& steps) const {
-    std::vector<std::string> command{MSO_SOURCE_DIR "/test/apps/view-window.sh",
-                                     path("said.txt"),
-                                     kViewer,
-                                     path("map.semantic"),
-                                     "--size",
-                                     size(),
-                                     "--camera",
-                                     kTop};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    command.push_back("--");
-    command.insert(command.end(), steps.begin(), steps.end());
-    const ProgramRun run = runInX(command);
-    EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  std::string work(const Words& arguments, const Words& steps) const {
+    return workWith(joined({path("map.semantic")}, arguments), steps);
+  }
+  /** \param files and options */
+  std::string workWith(const Words& files, const Words& steps) const {
+    Words command{MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer};
+    command = joined(command, files, {"--size", size(), "--camera", kTop, "--"});
+#ifdef MSO_DROP_FILES
+    command.insert(command.begin(), {"/usr/bin/env", "DROP_FILES=" MSO_DROP_FILES});
+#endif
+    succeeded(runInX(joined(command, steps)));
     return folder.read("said.txt");
   }
   static std::string at(const cv::Point& p) {

@@ -46,15 +46,9 @@ class SemanticMapViewFiles : public SemanticMapView {
   }
 
   /** \return what the window said */
-  std::string work(const Words& files, const Words& steps) {
-    Words command{MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer};
-    for (const auto& file : files) command.push_back(path(file));
-    command = joined(command, {"--size", size(), "--camera", kTop, "--"}, steps);
-#ifdef MSO_DROP_FILES
-    command.insert(command.begin(), {"/usr/bin/env", "DROP_FILES=" MSO_DROP_FILES});
-#endif
-    succeeded(runInX(command));
-    return folder.read("said.txt");
+  std::string work(Words files, const Words& steps) const {
+    for (std::string& file : files) file = path(file);
+    return workWith(files, steps);
   }
 
   std::string type(const std::string& file, const std::string& words, int lower = 0) const {
@@ -63,9 +57,6 @@ class SemanticMapViewFiles : public SemanticMapView {
   }
   std::string drop(const std::string& file, const std::string& words) const {
     return "drop " + path(file) + ' ' + words;
-  }
-  static std::string click(const cv::Point& at, const std::string& words) {
-    return std::to_string(at.x) + ' ' + std::to_string(at.y) + ' ' + words;
   }
 
   static void expectPath(const cv::Mat& picture) {
@@ -96,7 +87,7 @@ TEST_F(SemanticMapViewFiles, AreOpenedWhenTheyAreTyped) {
            {type("none.semantic", "none.semantic'"), type("bad.semantic", "bad.semantic'"),
             type("grass.bt", "opened .*grass.bt: [0-9]* leaves"),
             type("path.csv", "opened .*path.csv: 17 m", kSecondMap),
-            click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("screen.png")});
+            at(pixelOf(-3.1, 2.1, 0.2)) + " occupied, road", "picture " + path("screen.png")});
   EXPECT_TRUE(contains(said, "semantic-map-view: cannot load map '" + path("bad.semantic")));
   const cv::Mat screen = cv::imread(path("screen.png"));
   ASSERT_FALSE(screen.empty());
@@ -116,9 +107,9 @@ TEST_F(SemanticMapViewFiles, AreOpenedWhenTheyAreDropped) {
       {"road.semantic", "path.csv"},
       {drop("bad.semantic", "bad.semantic'"), drop("grass.bt", "opened .*grass.bt: [0-9]* leaves"),
        drop("robot.tum", "opened .*robot.tum: 16 m"),
-       click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("screen.png"),
-       click({kListX, kListY + kSecondMap}, "hides robot.tum"), click({24, 71}, "hides grass.bt"),
-       click(pixelOf(-3.1, 2.1, 0.2), "occupied, road"), "picture " + path("hidden.png")});
+       at(pixelOf(-3.1, 2.1, 0.2)) + " occupied, road", "picture " + path("screen.png"),
+       at({kListX, kListY + kSecondMap}) + " hides robot.tum", at({24, 71}) + " hides grass.bt",
+       at(pixelOf(-3.1, 2.1, 0.2)) + " occupied, road", "picture " + path("hidden.png")});
   const cv::Mat screen = cv::imread(path("screen.png")), hidden = cv::imread(path("hidden.png"));
   ASSERT_FALSE(screen.empty() || hidden.empty());
   EXPECT_TRUE(hasTrajectory(screen));

@@ -97,14 +97,8 @@ TEST_F(SemanticMapView, RefusesWrongCommandLines) {
 
 TEST_F(SemanticMapView, AnswersAClickOnACell) {
   SKIP_WITHOUT_WINDOWS();
-  const auto click = [](const cv::Point& at, const std::string& words) {
-    return std::to_string(at.x) + " " + std::to_string(at.y) + " " + words;
-  };
-  succeeded(runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
-                    path("map.semantic"), "--size", size(), "--camera", kTop, "--",
-                    click(pixelOf(-1.1, -2.1, 0.2), "key 32762 32757 32768"),
-                    click(pixelOf(5.1, 0.1, 2), "occupied, wall")}));
-  const std::string said = folder.read("said.txt");
+  const std::string said = work({}, {at(pixelOf(-1.1, -2.1, 0.2)) + " key 32762 32757 32768",
+                                     at(pixelOf(5.1, 0.1, 2)) + " occupied, wall"});
   EXPECT_TRUE(contains(said, "occupied, road"));
 }
 
@@ -113,10 +107,7 @@ TEST_F(SemanticMapView, SaysWhyACellIsExpandedOrNot) {
   // A voxel of the wall, which is expanded down to voxels, and one amid the grass, which is not.
   int lines = 0, open = 0;
   for (const cv::Point& pixel : {pixelOf(4.1, 0.9, 2), pixelOf(3.1, 3.1, 0.2)}) {
-    succeeded(runInX({MSO_SOURCE_DIR "/test/apps/view-window.sh", path("said.txt"), kViewer,
-                      path("map.semantic"), "--size", size(), "--camera", kTop, "--compress", "--",
-                      std::to_string(pixel.x) + " " + std::to_string(pixel.y) + " expanded, G"}));
-    const std::string said = folder.read("said.txt");
+    const std::string said = work({"--compress"}, {at(pixel) + " expanded, G"});
     std::smatch alpha, key;
     ASSERT_TRUE(std::regex_search(said, alpha, std::regex("leaves, alpha ([0-9.e-]+)"))) << said;
     ASSERT_TRUE(std::regex_search(said, key, std::regex("key (\\d+) (\\d+) (\\d+), edge"))) << said;
@@ -266,22 +257,12 @@ TEST_F(SemanticMapView, HasPanelsBesideEachOtherAndTheMapsMiddle) {
   SKIP_WITHOUT_WINDOWS();
   folder.write("robot.tum", "0 -8 -7 0 0 0 0 1\n1 8 -7 0 0 0 0 1\n");
   folder.write("order.yaml", "best_to_worst: [road, grass]\n");
-  const std::vector<std::string> files = {path("map.semantic"), path("robot.tum")};
   for (const cv::Size window : {cv::Size(1280, 720), cv::Size(1000, 600)}) {
-    const auto picture = [&](const std::vector<std::string>& more) {
-      std::vector<std::string> command = {
-          kViewer,
-          "--size",
-          std::to_string(window.width) + "x" + std::to_string(window.height),
-          "--camera",
-          "0,0,0,90,-90,90",
-          "-f",
-          "-o",
-          path("view.png")};
-      command.insert(command.end(), files.begin(), files.end());
-      command.insert(command.end(), more.begin(), more.end());
-      const ProgramRun run = runInX(command);
-      EXPECT_EQ(run.status, 0) << run.errors;
+    const auto picture = [&](const Words& more) {
+      succeeded(runInX(joined({kViewer, path("map.semantic"), path("robot.tum"), "--size",
+                               std::to_string(window.width) + "x" + std::to_string(window.height),
+                               "--camera", "0,0,0,90,-90,90", "-f", "-o", path("view.png")},
+                              more)));
       return cv::imread(path("view.png"));
     };
     const cv::Mat with = picture({}), without = picture({"--no-panels"});

@@ -183,7 +183,18 @@ TEST(PointFile, whatIsMalformedIsNamed) {
                  "field 'class' has type U and size 3");
   const std::string rest = "TYPE F F F F\nSIZE 4 4 4 4\n" + plain;
   EXPECT_FAILURE(rest + std::string(12, 'a') + bytesOf(1.5f), "point 0: label 1.5 is no class id");
-  EXPECT_FAILURE("FIELDS x y z\nPOINTS -1\nDATA ascii\n", "points:2: -1, expected a whole number");
+  const std::string text = "FIELDS x y z class\nPOINTS 2\nDATA ascii\n1 2 3 4\n";
+  EXPECT_FAILURE(text + "5 6\n", "points:5: '5 6': too few values");
+  for (const char* word : {"x", "2abc", "-1"})
+    EXPECT_FAILURE(text + "5 6 7 " + word + "\n", std::string("points:5: '5 6 7 ") + word);
+  for (const std::string points : {"-1", "0.5", "1e300"})
+    EXPECT_FAILURE("FIELDS x y z\nPOINTS " + points + "\nDATA ascii\n",
+                   "points:2: " + points + ", expected a whole number");
+  EXPECT_FAILURE("COUNT 1 1 1\n" + text, "points:1: 3 counts for 4 fields");
+  for (const char* grid : {"WIDTH 3\nHEIGHT 1", "WIDTH 2\nHEIGHT 0", "WIDTH 0\nHEIGHT 0",
+                           "WIDTH 1\nHEIGHT 1099511627776"})
+    EXPECT_FAILURE(std::string(grid) + "\n" + text + "5 6 7 8\n", " points, and POINTS says 2");
+  EXPECT_FAILURE("nothing\n", "no FIELDS");
   EXPECT_FAILURE("ply\nformat ascii 1.0\n", "no end_header");
   EXPECT_FAILURE("ply\nformat ascii 1.0\nend_header\n", "no element vertex");
   EXPECT_FAILURE("ply\nelement face 3\nend_header\n",

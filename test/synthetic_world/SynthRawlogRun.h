@@ -4,10 +4,9 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <string>
 
+#include "RunProgram.h"
 #include "TemporaryFolder.h"
 
 /** Runs of the program synth-rawlog, and what they leave behind. */
@@ -17,23 +16,10 @@ namespace fs = std::filesystem;
 
 using Folder = TemporaryFolder;
 
-inline std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-struct Outcome {
-  int status;
-  std::string out, error;
-};
-
 /** Runs the program in the folder with these arguments. */
-inline Outcome run(const Folder& folder, const std::string& arguments) {
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && '" MSO_BIN_DIR "/synth-rawlog' " + arguments +
-                              " >out.txt 2>error.txt";
-  const int status = std::system(command.c_str());
-  return {WEXITSTATUS(status), folder.read("out.txt"), folder.read("error.txt")};
+inline ProgramRun run(const Folder& folder, const std::string& arguments) {
+  return runCommand("cd '" + folder.path().string() + "' && '" MSO_BIN_DIR "/synth-rawlog' " +
+                    arguments);
 }
 
 /** All observations of a rawlog, those of sensory frames too, in their order. */

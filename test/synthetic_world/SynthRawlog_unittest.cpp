@@ -2,6 +2,7 @@
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/containers/yaml.h>
 #include <semantic_types/ClassTable.h>
+#include <strict_files/TextFile.h>
 #include <synthetic_world/Scene.h>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,7 @@ using labeled_cloud::CObservationLabeledCloud;
 using mrpt::obs::CObservation3DRangeScan;
 using mrpt::obs::CObservationRobotPose;
 using mrpt::poses::CPose3D;
+using strict_files::readText;
 using synthetic_world::makeScene;
 using synthetic_world::PointTruth;
 
@@ -99,11 +101,11 @@ TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   for (const std::string kind : {"", "--odometry"}) {
     ASSERT_EQ(run(folder, "-f -o a.rawlog" + noise + kind).status, 0);
     ASSERT_EQ(run(folder, "-f -o b.rawlog" + noise + kind).status, 0);
-    EXPECT_EQ(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
-    EXPECT_EQ(contents(folder / "a.tum"), contents(folder / "b.tum"));
+    EXPECT_EQ(folder.read("a.rawlog"), folder.read("b.rawlog"));
+    EXPECT_EQ(folder.read("a.tum"), folder.read("b.tum"));
   }
   ASSERT_EQ(run(folder, "-f -o b.rawlog" + noise + "--odometry --seed 10").status, 0);
-  EXPECT_NE(contents(folder / "a.rawlog"), contents(folder / "b.rawlog"));
+  EXPECT_NE(folder.read("a.rawlog"), folder.read("b.rawlog"));
 }
 
 TEST(SynthRawlog, movementsSumUpToTheTrueWayWithoutNoiseOnly) {
@@ -153,7 +155,7 @@ TEST(SynthRawlog, writesTheSameWorldInRugdsClasses) {
         if (labelBits(*scan, row, column) == 1u << id) {
           ASSERT_EQ(labelBits(*scanInRugd, row, column), 1u << rugd.fromRaw(id));
         }
-  EXPECT_TRUE(contains(contents(folder / "y.truth.yaml"), "name: rock-bed"));
+  EXPECT_TRUE(contains(folder.read("y.truth.yaml"), "name: rock-bed"));
 }
 
 TEST(SynthRawlog, theTruthNamesClassesWhateverTheirNames) {
@@ -173,17 +175,17 @@ TEST(SynthRawlog, theTruthNamesClassesWhateverTheirNames) {
 TEST(SynthRawlog, refusesAClassTableThatDoesNotFoldTheWorldOrIsTooLarge) {
   const Folder folder;
   std::ofstream(folder / "few.yaml") << "classes:\n  - {id: 1, name: a, color: [0, 0, 0]}\n";
-  const Outcome few = run(folder, "-o x.rawlog" + kSmall + "--classes few.yaml");
+  const ProgramRun few = run(folder, "-o x.rawlog" + kSmall + "--classes few.yaml");
   EXPECT_EQ(few.status, 1);
-  EXPECT_TRUE(contains(few.error, "few.yaml: raw class id 2 is not in the class table"));
+  EXPECT_TRUE(contains(few.output, "few.yaml: raw class id 2 is not in the class table"));
   std::ofstream many(folder / "many.yaml");
   many << "classes:\n";
   for (int i = 1; i <= 32; ++i)
     many << "  - {id: " << i << ", name: c" << i << ", color: [0, 0, 0]}\n";
   many.close();
-  const Outcome tooMany = run(folder, "-o x.rawlog" + kSmall + "--classes many.yaml");
+  const ProgramRun tooMany = run(folder, "-o x.rawlog" + kSmall + "--classes many.yaml");
   EXPECT_EQ(tooMany.status, 1);
-  EXPECT_TRUE(contains(tooMany.error, "32 classes, and a pixel's labels hold 31"));
+  EXPECT_TRUE(contains(tooMany.output, "32 classes, and a pixel's labels hold 31"));
   EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
 }
 
@@ -196,9 +198,9 @@ TEST(SynthRawlog, answersWhatIsAtPoints) {
                                        << at.x() << ' ' << at.y() << ' ' << ground + 0.01 << '\n'
                                        << at.x() << ' ' << at.y() << ' ' << ground + 1 << '\n'
                                        << at.x() << ' ' << at.y() << ' ' << ground - 1 << '\n';
-  const Outcome outcome = run(folder, "--truth-query points.txt");
-  ASSERT_EQ(outcome.status, 0) << outcome.error;
-  std::istringstream lines(outcome.out);
+  const ProgramRun outcome = run(folder, "--truth-query points.txt");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  std::istringstream lines(outcome.output);
   for (const std::string expected : {"surface 1 road", "free 0 -", "underground 1 road"}) {
     std::string line;
     ASSERT_TRUE(std::getline(lines, line));
@@ -238,9 +240,9 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
       {"--truth-query absent.txt", "absent.txt"},
       {"--truth-query short.txt", "short.txt:2"}};
   for (const auto& [arguments, reason] : cases) {
-    const Outcome outcome = run(folder, arguments);
+    const ProgramRun outcome = run(folder, arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_TRUE(contains(outcome.error, reason)) << arguments << ": " << outcome.error;
+    EXPECT_TRUE(contains(outcome.output, reason)) << arguments << ": " << outcome.output;
   }
   EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
 }
@@ -250,7 +252,7 @@ const fs::path kSamples = fs::path(MSO_SOURCE_DIR) / "rawlog-samples";
 /** The arguments of the command that the samples' README says made them. */
 std::string documentedArguments() {
   const std::string readme =
-      std::regex_replace(contents(kSamples / "README.md"), std::regex("\\\\\n\\s*"), "");
+      std::regex_replace(readText(kSamples / "README.md"), std::regex("\\\\\n\\s*"), "");
   std::smatch match;
   if (!std::regex_search(readme, match, std::regex("\n    synth-rawlog ([^\n]*)")))
     throw std::runtime_error("rawlog-samples/README.md: no command");
@@ -307,8 +309,8 @@ TEST(SampleRawlog, isWhatTheDocumentedCommandWrites) {
     expectSameImage(*images[i], *otherImages[i]);
     expectSameCloud(*clouds[i], *otherClouds[i]);
   }
-  EXPECT_EQ(contents(kSamples / "village.tum"), contents(folder / "village.tum"));
-  EXPECT_EQ(contents(kSamples / "village.truth.yaml"), contents(folder / "village.truth.yaml"));
+  EXPECT_EQ(readText(kSamples / "village.tum"), folder.read("village.tum"));
+  EXPECT_EQ(readText(kSamples / "village.truth.yaml"), folder.read("village.truth.yaml"));
 }
 
 TEST(SampleRawlog, isSmall) {

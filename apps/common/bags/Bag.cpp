@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "ByteReader.h"
 
@@ -19,6 +20,9 @@ namespace bags {
 namespace fs = std::filesystem;
 
 namespace {
+
+/** Bytes of a chunk, or a message, that is larger are refused. */
+constexpr std::uint64_t kMostChunkBytes = std::uint64_t{1} << 30;
 
 bool isBag(const fs::path& file) {
   return file.extension() == ".mcap" || file.extension() == ".db3";
@@ -30,8 +34,7 @@ bool comesFirst(const fs::path& a, const fs::path& b) {
   return x.size() != y.size() ? x.size() < y.size() : x < y;
 }
 
-}  // namespace
-
+/** The bag itself, or the files of a folder. */
 std::vector<fs::path> filesOfBag(const fs::path& bag) {
   if (!fs::exists(bag)) throw std::runtime_error(bag.string() + ": there is no such bag");
   if (!fs::is_directory(bag)) {
@@ -48,31 +51,6 @@ std::vector<fs::path> filesOfBag(const fs::path& bag) {
   std::sort(files.begin(), files.end(), comesFirst);
   return files;
 }
-
-void readBag(const fs::path& bag, const WantsTopic& wants, const TakeMessage& take) {
-  bool goesOn = true;
-  for (const fs::path& file : filesOfBag(bag)) try {
-      if (!goesOn) return;
-      const auto takeOne = [&](const BagTopic& topic, std::string_view message) {
-        return goesOn = take(topic, message);
-      };
-      (file.extension() == ".mcap" ? readMcap : readSqliteBag)(file, wants, takeOne);
-    } catch (const std::runtime_error& e) {
-      throw std::runtime_error(file.string() + ": " + e.what());
-    }
-}
-
-std::set<BagTopic> topicsOfBag(const fs::path& bag) {
-  std::set<BagTopic> topics;
-  const auto note = [&topics](const BagTopic& topic) {
-    topics.insert(topic);
-    return false;
-  };
-  readBag(bag, note, [](const BagTopic&, std::string_view) { return true; });
-  return topics;
-}
-
-namespace {
 
 /** A database that is only read, and whose bytes are not trusted. */
 class Database {
@@ -123,10 +101,7 @@ class Query {
   std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> m_statement{nullptr, &sqlite3_finalize};
 };
 
-}  // namespace
-
-void readSqliteBag(const std::filesystem::path& file, const WantsTopic& wants,
-                   const TakeMessage& take) {
+void readSqlite(const fs::path& file, const WantsTopic& wants, const TakeMessage& take) {
   const Database database(file);
   std::map<std::int64_t, BagTopic> wanted;
   Query topics(database, "SELECT id, name, type, serialization_format FROM topics");
@@ -141,8 +116,6 @@ void readSqliteBag(const std::filesystem::path& file, const WantsTopic& wants,
     if (topic != wanted.end() && !take(topic->second, messages.bytes(1))) return;
   }
 }
-
-namespace {
 
 [[noreturn]] void failAs(std::string_view compression, const char* what) {
   throw std::runtime_error("a chunk compressed by " + std::string(compression) +
@@ -216,10 +189,7 @@ std::string uncompressed(std::string_view bytes, std::string_view compression, s
   return std::string(bytes);
 }
 
-namespace fs = std::filesystem;
-
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-constexpr std::uint64_t kMostRecordBytes = kMostChunkBytes;
 
 enum Opcode : std::uint8_t {
   kFooter = 0x02,
@@ -260,9 +230,9 @@ class McapReader {
 
   std::string next(std::uint64_t size) {
     check(size);
-    if (size > kMostRecordBytes)
+    if (size > kMostChunkBytes)
       throw std::runtime_error("a record of " + std::to_string(size) + " bytes, expected at most " +
-                               std::to_string(kMostRecordBytes));
+                               std::to_string(kMostChunkBytes));
     std::string bytes(static_cast<std::size_t>(size), '\0');
     m_in.read(bytes.data(), static_cast<std::streamsize>(size));
     if (!m_in) throw std::runtime_error("cannot be read");
@@ -340,10 +310,23 @@ class McapReader {
   std::map<std::uint16_t, std::optional<BagTopic>> m_channels;  ///< none: not wanted
 };
 
-}  // namespace
-
 void readMcap(const fs::path& file, const WantsTopic& wants, const TakeMessage& take) {
   McapReader(file, wants, take).read();
+}
+
+}  // namespace
+
+void readBag(const fs::path& bag, const WantsTopic& wants, const TakeMessage& take) {
+  bool goesOn = true;
+  for (const fs::path& file : filesOfBag(bag)) try {
+      if (!goesOn) return;
+      const auto takeOne = [&](const BagTopic& topic, std::string_view message) {
+        return goesOn = take(topic, message);
+      };
+      (file.extension() == ".mcap" ? readMcap : readSqlite)(file, wants, takeOne);
+    } catch (const std::runtime_error& e) {
+      throw std::runtime_error(file.string() + ": " + e.what());
+    }
 }
 
 }  // namespace bags

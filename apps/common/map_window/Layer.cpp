@@ -46,7 +46,8 @@ SemanticOcTree coarseEnough(const SemanticOcTree& map, std::size_t bytes) {
   }
 }
 
-OpenedMap openFolder(const fs::path& folder, const WantedTiles& wanted) {
+/** \param note is set to what there is to say of it */
+SemanticOcTree openFolder(const fs::path& folder, const WantedTiles& wanted, std::string& note) {
   const double bytes = wanted.memory * 1e6;
   semantic_octree::MapFolderOptions options;
   options.memory = kShareOfTiles * wanted.memory;
@@ -57,22 +58,13 @@ OpenedMap openFolder(const fs::path& folder, const WantedTiles& wanted) {
     tiles->bringAll(std::size_t(bytes));
   } catch (const std::runtime_error& tooLarge) {
     SemanticOcTree coarse = coarseEnough(map, std::size_t((1 - kShareOfTiles) * bytes));
-    const std::string edge = strict_files::textOf(coarse.getResolution());
-    return {std::move(coarse),
-            strict_files::messageOf(tooLarge) + ": shown with voxels of " + edge + " m"};
+    note = strict_files::messageOf(tooLarge) + ": shown with voxels of " +
+           strict_files::textOf(coarse.getResolution()) + " m";
+    return coarse;
   }
   tiles.reset();
-  return {std::move(map), {}};
+  return map;
 }
-
-}  // namespace
-
-OpenedMap openMap(const fs::path& file, const WantedTiles& wanted) {
-  if (MapFolder::isAt(file)) return openFolder(file, wanted);
-  return {inputs::loadMap(file), {}};
-}
-
-namespace {
 
 /** The name of a file or of a folder. */
 std::string nameOf(const std::filesystem::path& file) {
@@ -90,10 +82,10 @@ std::pair<float, float> mostOf(std::vector<float>& values) {
 
 }  // namespace
 
-Layer::Layer(const std::filesystem::path& file, OpenedMap opened)
+Layer::Layer(const std::filesystem::path& file, const WantedTiles& wanted)
     : m_name(nameOf(file)),
-      m_note(std::move(opened.note)),
-      m_own(std::make_unique<SemanticOcTree>(std::move(opened.map))),
+      m_own(std::make_unique<SemanticOcTree>(
+          MapFolder::isAt(file) ? openFolder(file, wanted, m_note) : inputs::loadMap(file))),
       m_map(m_own.get()),
       m_look(*m_map),
       m_cells(std::make_unique<map_view::FullCells>(*m_map)) {
@@ -108,6 +100,14 @@ Layer::Layer(const std::string& name, const SemanticOcTree& map)
 void Layer::grown() {
   m_look.forget();
   count();
+}
+
+void Layer::showCompressed(const map_view::LiveCompression* compression) {
+  if (compression)
+    m_cells = std::make_unique<map_view::CompressedCells>(*m_map, *compression);
+  else
+    m_cells = std::make_unique<map_view::FullCells>(*m_map);
+  m_look.setCompression(compression);
 }
 
 void Layer::count() {

@@ -14,21 +14,13 @@ struct WantedTiles {
   Eigen::AlignedBox3d box = map_view::ViewStyle::everywhere();
 };
 
-struct OpenedMap {
-  semantic_octree::SemanticOcTree map;
-  std::string note;  ///< what there is to say of it
-};
-
-/** A map's own file, OctoMap's, or a folder of tiles. What of the latter takes more memory than is
- * wanted is opened as if its voxels had 2, 4, 8 ... times their edge: the finest that fits.
- * \throw std::runtime_error naming the file and what is wrong. */
-OpenedMap openMap(const std::filesystem::path& file, const WantedTiles& wanted = {});
-
 /** A map that is open. */
 class Layer {
  public:
-  explicit Layer(const std::filesystem::path& file, const WantedTiles& wanted = {})
-      : Layer(file, openMap(file, wanted)) {}
+  /** A map's own file, OctoMap's, or a folder of tiles. What of the latter takes more memory than
+   * is wanted is opened as if its voxels had 2, 4, 8 ... times their edge: the finest that fits.
+   * \throw std::runtime_error naming the file and what is wrong. */
+  explicit Layer(const std::filesystem::path& file, const WantedTiles& wanted = {});
   /** One that a program makes. It must outlive the layer; grown() says that it has changed. */
   Layer(const std::string& name, const semantic_octree::SemanticOcTree& map);
   void grown();
@@ -42,7 +34,8 @@ class Layer {
   const map_view::CellSource& cells() const { return *m_cells; }
   map_view::CellLook& look() { return m_look; }
   const map_view::CellLook& look() const { return m_look; }
-  void setCells(std::unique_ptr<map_view::CellSource> cells) { m_cells = std::move(cells); }
+  /** \param compression whose cells these are from now on; null: of the map itself */
+  void showCompressed(const map_view::LiveCompression* compression);
 
   /** K + 1 numbers of occupied leaves by their likeliest class. */
   const std::vector<std::size_t>& leavesOfClass() const { return m_leavesOfClass; }
@@ -50,7 +43,6 @@ class Layer {
   const Eigen::AlignedBox3d& extent() const { return m_extent; }
 
  private:
-  Layer(const std::filesystem::path& file, OpenedMap opened);
   void count();
 
   std::string m_name, m_note;

@@ -174,13 +174,12 @@ void ShowPanel::listLayers() {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < m_viewer.numLayers(); ++i) {
     names.push_back(m_viewer.layer(i).name());
-    auto* box = addCheckBox(m_layers, captionOf(m_viewer.layer(i)), kShowWidth);
-    box->setChecked(m_viewer.isShown(i));
-    box->setCallback([this, i](bool on) {
+    const auto show = [this, i](bool on) {
       m_viewer.setShown(i, on);
       m_viewer.say((on ? "shows " : "hides ") + m_viewer.layer(i).name());
-    });
-    m_shown.push_back(box);
+    };
+    m_shown.push_back(
+        addCheckBox(m_layers, captionOf(m_viewer.layer(i)), kShowWidth, m_viewer.isShown(i), show));
   }
   m_active->setItems(names);
 }
@@ -242,9 +241,8 @@ void ShowPanel::listClasses() {
     const auto classId = static_cast<semantic_types::ClassId>(id);
     auto* row = addRow(m_classes);
     new Swatch(row, semantic_types::colorOf(classId, classes));
-    auto* box = addCheckBox(row, classes.name(classId), 135);
-    box->setChecked(id >= hidden.size() || !hidden[id]);
-    box->setCallback([this, id](bool on) { hide(id, !on); });
+    addCheckBox(row, classes.name(classId), 135, id >= hidden.size() || !hidden[id],
+                [this, id](bool on) { hide(id, !on); });
     addText(row, shortNumber(double(leaves[id])), 50);
   }
 }
@@ -323,11 +321,7 @@ void ShowPanel::addCameras(Widget* parent) {
               [this, preset] { m_viewer.lookFrom(preset.azimuth, preset.elevation); });
   }
   auto* picture = addButton(row, "PNG", 38, [this] {
-    try {
-      m_viewer.say("wrote " + m_viewer.savePicture(".").string());
-    } catch (const std::exception& e) {
-      m_viewer.complain(e);
-    }
+    m_viewer.attempt([this] { m_viewer.say("wrote " + m_viewer.savePicture(".").string()); });
   });
   picture->setTooltip("Writes this picture into the working folder");
 }

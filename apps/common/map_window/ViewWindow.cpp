@@ -177,7 +177,7 @@ bool ViewWindow::attend() {
   return true;
 }
 
-void ViewWindow::run(const std::function<bool()>& done) {
+void ViewWindow::run() {
   bool more = true;
   double last = 0;
   while (!glfwWindowShouldClose(mGLFWWindow)) {
@@ -185,8 +185,7 @@ void ViewWindow::run(const std::function<bool()>& done) {
       glfwPollEvents();
     else
       glfwWaitEventsTimeout(kIdle / 5);
-    if (!more && !m_dirty && glfwGetTime() - last < kIdle && !done()) continue;
-    if (!more && !m_dirty && done()) return;
+    if (!more && !m_dirty && glfwGetTime() - last < kIdle) continue;
     more = drawFrame();
     last = glfwGetTime();
   }

@@ -60,8 +60,8 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   /** Draws again soon. */
   void redraw() { m_dirty = true; }
 
-  /** Until the window is closed, or until done() after a frame without more to do. */
-  void run(const std::function<bool()>& done);
+  /** Until the window is closed. */
+  void run();
   /** Sees to what hands did, and draws what there is to be drawn. \return false: it was closed */
   bool attend();
   /** Whether the last frame of attend() left nothing to do. */

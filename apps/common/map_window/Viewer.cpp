@@ -227,7 +227,7 @@ void Viewer::setShown(std::size_t layer, bool isShown) {
 }
 
 void Viewer::activate(std::size_t layer) {
-  showFull();
+  showCompressed(nullptr);
   m_active = layer;
   setShown(layer, true);
   for (const auto& f : m_onActivated) f();
@@ -273,16 +273,8 @@ fs::path Viewer::savePicture(const fs::path& folder) {
   return file;
 }
 
-void Viewer::showFull() {
-  layer().setCells(std::make_unique<map_view::FullCells>(layer().map()));
-  layer().look().setCompression(nullptr);
-  tiles().touch();
-  m_window.redraw();
-}
-
-void Viewer::showCompressed(const map_view::LiveCompression& compression) {
-  layer().setCells(std::make_unique<map_view::CompressedCells>(layer().map(), compression));
-  layer().look().setCompression(&compression);
+void Viewer::showCompressed(const map_view::LiveCompression* compression) {
+  layer().showCompressed(compression);
   tiles().touch();
   m_window.redraw();
 }
@@ -293,8 +285,10 @@ void Viewer::say(const std::string& text) {
   m_window.redraw();
 }
 
-void Viewer::complain(const std::exception& problem) {
-  m_said = strict_files::messageOf(problem);
+void Viewer::attempt(const std::function<void()>& action) try {
+  action();
+} catch (const std::exception& e) {
+  m_said = strict_files::messageOf(e);
   std::cerr << m_window.caption() << ": " << m_said << std::endl;
   m_window.redraw();
 }

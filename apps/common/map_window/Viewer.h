@@ -78,9 +78,8 @@ class Viewer {
   const map_view::ViewStyle& style() const { return m_maps[m_active].layer->look().style(); }
   /** Sets the style of all maps; the hidden classes are those of the active one. */
   void setStyle(const map_view::ViewStyle& style);
-  /** The leaves of the map, or of its compressed tree. */
-  void showFull();
-  void showCompressed(const map_view::LiveCompression& compression);
+  /** The leaves of the map's compressed tree, or, without one, of the map. */
+  void showCompressed(const map_view::LiveCompression* compression);
   /** Cells in some boxes look otherwise from now on: the next frame shows that, if coarsely, those
    * after it all of it. */
   void changed(const std::vector<map_view::KeyBox>& boxes);
@@ -96,8 +95,8 @@ class Viewer {
 
   /** A line below the map, and on the standard output. */
   void say(const std::string& text);
-  /** Says what went wrong, also on the standard error. */
-  void complain(const std::exception& problem);
+  /** Does it. If something goes wrong, says so, also on the standard error. */
+  void attempt(const std::function<void()>& action);
   const std::string& said() const { return m_said; }
 
  private:

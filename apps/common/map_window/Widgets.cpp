@@ -153,10 +153,13 @@ nanogui::Button* addButton(Widget* parent, const std::string& text, int width,
   return button;
 }
 
-nanogui::CheckBox* addCheckBox(Widget* parent, const std::string& text, int width) {
+nanogui::CheckBox* addCheckBox(Widget* parent, const std::string& text, int width, bool checked,
+                               const std::function<void(bool)>& switched) {
   auto* box = parent->add<nanogui::CheckBox>(text);
   box->setFixedSize({width, kLine});
   box->setFontSize(kFont);
+  box->setChecked(checked);
+  box->setCallback(switched);
   return box;
 }
 

@@ -89,7 +89,8 @@ nanogui::Label* addLines(nanogui::Widget* parent, int width);
 nanogui::Button* addButton(nanogui::Widget* parent, const std::string& text, int width,
                            const std::function<void()>& pressed);
 
-nanogui::CheckBox* addCheckBox(nanogui::Widget* parent, const std::string& text, int width);
+nanogui::CheckBox* addCheckBox(nanogui::Widget* parent, const std::string& text, int width,
+                               bool checked, const std::function<void(bool)>& switched);
 
 /** Takes out all children; none of them keeps the keyboard. */
 void removeChildren(nanogui::Widget* parent);

@@ -1,5 +1,7 @@
 #include "PointFields.h"
 
+#include <labeled_cloud/ScanConverter.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -136,7 +138,6 @@ Eigen::Isometry3d T_optical_camera() {
 }
 
 using semantic_types::ClassId;
-using semantic_types::ClassTable;
 using semantic_types::Color;
 using semantic_types::kNoClass;
 using semantic_types::LabeledCloud;
@@ -243,7 +244,6 @@ struct FinitePoints {
 }  // namespace
 
 std::vector<float> timesOf(const RawCloud& raw, double stamp) {
-  constexpr double kLongest = 1;  // s between a point and its scan's stamp
   const RawCloud::Field* field = nullptr;
   for (const char* name : {"t", "time", "timestamp", "time_stamp", "time_offset", "offset_time"})
     if (!field) field = find(raw, name);
@@ -254,11 +254,10 @@ std::vector<float> timesOf(const RawCloud& raw, double stamp) {
   const double unit = field->type < 7 ? 1e-9 : 1;
   const std::pair<double, double> readings[] = {{unit, 0}, {unit, stamp}, {1e-9, stamp}};
   for (const auto& [seconds, zero] : readings) {
-    std::vector<float> times;
-    for (const double n : numbers)
-      if (std::abs(n * seconds - zero) <= kLongest)
-        times.push_back(static_cast<float>(n * seconds - zero));
-    if (times.size() == numbers.size()) return times;
+    std::vector<double> afterStamp;
+    for (const double n : numbers) afterStamp.push_back(n * seconds - zero);
+    const auto times = labeled_cloud::timesOfPoints(afterStamp);
+    if (!times.empty()) return times;
   }
   return {};
 }
@@ -271,12 +270,9 @@ ClassId NumberedClasses::at(double number) {
 }
 
 ClassId NumberedClasses::find(double number) {
-  if (number == 0 && !m_areColors && m_table.folds().count(0) == 0) return kNoClass;
   try {
-    if (!(number >= 0 && number <= 4294967295.0) || number != std::floor(number))
-      throw std::invalid_argument("a number that is no raw id");
-    const auto id = static_cast<std::uint32_t>(number);
-    if (!m_areColors) return m_table.fromRaw(id);
+    const std::uint32_t id = labeled_cloud::rawIdOf(number);
+    if (!m_areColors) return labeled_cloud::classOfRawId(id, m_table);
     const Color color{std::uint8_t(id >> 16), std::uint8_t(id >> 8), std::uint8_t(id)};
     const auto found = m_table.find(color);
     if (!found && id != 0)

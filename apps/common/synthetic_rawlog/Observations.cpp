@@ -58,10 +58,6 @@ void DriveLog::writeMovement(mrpt::Clock::time_point time, const Eigen::Isometry
 using mrpt::obs::CObservation3DRangeScan;
 using synthetic_world::ClassTable;
 
-mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose) {
-  return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(pose.matrix()));
-}
-
 cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image) {
   cv::Mat3b result(image.height, image.width);
   for (int row = 0; row < image.height; ++row)

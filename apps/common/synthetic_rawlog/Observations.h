@@ -1,6 +1,7 @@
 #pragma once
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
+#include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationRobotPose.h>
@@ -15,6 +16,8 @@
 // What the sensors of the synthetic world see, as MRPT's observations.
 
 namespace synthetic_rawlog {
+
+using labeled_cloud::toMrpt;
 
 /** The rawlog of a drive, frame by frame. */
 class DriveLog {
@@ -40,8 +43,6 @@ class DriveLog {
   Eigen::Isometry3d m_T_map_before = Eigen::Isometry3d::Identity();
   bool m_started = false;
 };
-
-mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose);
 
 /** Blue, green, red. */
 cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image);

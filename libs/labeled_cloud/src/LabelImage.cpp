@@ -49,50 +49,50 @@ ClassId LabelImage::classOf(std::size_t cell) const {
 
 namespace {
 
-constexpr int kMaxLabels = 64;
-
-/** Class of each label, looked up when it is met first: labels that no pixel has need no class. */
-class ClassOfLabel {
+/** Class of each pixel value or label, looked up when it is met first: labels that no pixel has
+ * need no class. */
+template <typename LookUp>
+class Cached {
  public:
-  ClassOfLabel(const ClassTable& table, const TPixelLabelInfoBase& labels)
-      : m_table(table), m_names(labels.pixelLabelNames) {
-    m_known.fill(false);
-  }
-
-  ClassId operator()(int label) {
-    if (!m_known[label]) m_class[label] = lookUp(label), m_known[label] = true;
-    return m_class[label];
+  explicit Cached(LookUp lookUp) : m_lookUp(lookUp) {}
+  ClassId operator()(std::uint32_t value) {
+    if (m_last && m_last->first == value) return m_last->second;
+    auto found = m_known.find(value);
+    if (found == m_known.end()) found = m_known.emplace(value, m_lookUp(value)).first;
+    m_last = &*found;
+    return found->second;
   }
 
  private:
-  ClassId lookUp(int label) const {
-    const auto name = m_names.find(label);
-    if (name == m_names.end()) return m_table.fromRaw(label);
-    if (const auto id = m_table.find(name->second)) return *id;
-    if (m_table.unknownRawId() == ClassTable::UnknownRawId::NoClass) return kNoClass;
-    throw std::invalid_argument("label " + std::to_string(label) + " is named '" + name->second +
-                                "', which is no class of the table");
-  }
-
-  const ClassTable& m_table;
-  const TPixelLabelInfoBase::TMapLabelID2Name& m_names;
-  std::array<bool, kMaxLabels> m_known;
-  std::array<ClassId, kMaxLabels> m_class;
+  LookUp m_lookUp;
+  std::unordered_map<std::uint32_t, ClassId> m_known;
+  const std::pair<const std::uint32_t, ClassId>* m_last = nullptr;
 };
+
+ClassId classOfLabel(std::uint32_t label, const TPixelLabelInfoBase& labels,
+                     const ClassTable& table) {
+  const auto name = labels.pixelLabelNames.find(static_cast<int>(label));
+  if (name == labels.pixelLabelNames.end()) return table.fromRaw(label);
+  if (const auto id = table.find(name->second)) return *id;
+  if (table.unknownRawId() == ClassTable::UnknownRawId::NoClass) return kNoClass;
+  throw std::invalid_argument("label " + std::to_string(label) + " is named '" + name->second +
+                              "', which is no class of the table");
+}
 
 /** Fills IMAGE if the bit fields are BYTES wide. */
 template <unsigned BYTES>
-bool convert(const TPixelLabelInfoBase& labels, ClassOfLabel& classOf, LabelImage& image) {
+bool convert(const TPixelLabelInfoBase& labels, const ClassTable& table, LabelImage& image) {
   const auto* fields = dynamic_cast<const TPixelLabelInfo<BYTES>*>(&labels);
   if (!fields) return false;
   const auto& bits = fields->pixelLabels;
   image.rows = static_cast<int>(bits.rows());
   image.cols = static_cast<int>(bits.cols());
   image.classes.reserve(bits.size());
+  Cached classOf([&](std::uint32_t label) { return classOfLabel(label, labels, table); });
   for (int row = 0; row < image.rows; ++row)
     for (int col = 0; col < image.cols; ++col) {
       const std::uint64_t set = bits(row, col);
-      image.classes.push_back(set ? classOf(__builtin_ctzll(set)) : kNoClass);
+      image.classes.push_back(set ? classOf(std::uint32_t(__builtin_ctzll(set))) : kNoClass);
     }
   return true;
 }
@@ -106,11 +106,10 @@ std::optional<LabelImage> EmbeddedLabels::label(const mrpt::obs::CObservation& o
   LabelImage image;
   image.view = m_view;
   image.origin = "pixelLabels of '" + scan->sensorLabel + "'";
-  ClassOfLabel classOf(m_table, labels);
   try {
-    if (!convert<1>(labels, classOf, image) && !convert<2>(labels, classOf, image) &&
-        !convert<3>(labels, classOf, image) && !convert<4>(labels, classOf, image) &&
-        !convert<8>(labels, classOf, image))
+    if (!convert<1>(labels, m_table, image) && !convert<2>(labels, m_table, image) &&
+        !convert<3>(labels, m_table, image) && !convert<4>(labels, m_table, image) &&
+        !convert<8>(labels, m_table, image))
       throw std::invalid_argument(std::to_string(8 * labels.BITFIELD_BYTES) + " labels a pixel");
   } catch (const std::invalid_argument& e) {
     throw std::runtime_error(image.origin + ": " + e.what());
@@ -233,25 +232,6 @@ std::optional<LabelImage> LabelFolder::label(const CObservation& observation) {
 
 namespace {
 
-/** Class of each pixel value, looked up once per value. */
-template <typename LookUp>
-class Cached {
- public:
-  explicit Cached(LookUp lookUp) : m_lookUp(lookUp) {}
-  ClassId operator()(std::uint32_t value) {
-    if (m_last && m_last->first == value) return m_last->second;
-    auto found = m_known.find(value);
-    if (found == m_known.end()) found = m_known.emplace(value, m_lookUp(value)).first;
-    m_last = &*found;
-    return found->second;
-  }
-
- private:
-  LookUp m_lookUp;
-  std::unordered_map<std::uint32_t, ClassId> m_known;
-  const std::pair<const std::uint32_t, ClassId>* m_last = nullptr;
-};
-
 ClassId classOfColor(const ClassTable& table, std::uint32_t bgr) {
   const Color color{std::uint8_t(bgr >> 16), std::uint8_t(bgr >> 8), std::uint8_t(bgr)};
   if (const auto id = table.find(color)) return *id;
@@ -266,7 +246,7 @@ LabelImage classify(const cv::Mat& pixels, ValueOf valueOf, LookUp lookUp) {
   LabelImage image;
   image.rows = pixels.rows, image.cols = pixels.cols;
   image.classes.reserve(pixels.total());
-  Cached<LookUp> classOf(lookUp);
+  Cached classOf(lookUp);
   for (int row = 0; row < image.rows; ++row)
     for (int col = 0; col < image.cols; ++col) try {
         image.classes.push_back(classOf(valueOf(pixels.at<Pixel>(row, col))));

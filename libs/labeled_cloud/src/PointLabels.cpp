@@ -6,7 +6,6 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt_compat/Maps.h>
-#include <strict_files/OptionList.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,21 +81,8 @@ std::vector<Color> colorsOf(const CPointsMap& cloud) {
 
 std::vector<std::uint32_t> labelsOf(const CPointsMap& cloud) {
   std::vector<std::uint32_t> labels;
-  for (const double label : field(cloud, "label")) {
-    if (!(label >= 0 && label <= 4294967295.0 && label == std::floor(label)))
-      throw std::invalid_argument("its label " + strict_files::textOf(label) + " is no class id");
-    labels.push_back(static_cast<std::uint32_t>(label));
-  }
+  for (const double label : field(cloud, "label")) labels.push_back(rawIdOf(label));
   return labels;
-}
-
-/** None if they are no seconds after a scan's own time: who wrote them means something else. */
-std::vector<float> timesOf(const CPointsMap& cloud) {
-  constexpr double kLongest = 1;  // s
-  const std::vector<double> times = field(cloud, "t");
-  const bool areTimes =
-      std::all_of(times.begin(), times.end(), [](double t) { return std::abs(t) <= kLongest; });
-  return areTimes ? std::vector<float>(times.begin(), times.end()) : std::vector<float>();
 }
 
 NamedCloud cloudOf(const CObservationPointCloud& observation) {
@@ -107,7 +93,7 @@ NamedCloud cloudOf(const CObservationPointCloud& observation) {
       zip(cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(), cloud.getPointsBufferRef_z());
   named.colors = colorsOf(cloud);
   named.rawIds = labelsOf(cloud);
-  named.times = timesOf(cloud);
+  named.times = timesOfPoints(field(cloud, "t"));
   return named;
 }
 

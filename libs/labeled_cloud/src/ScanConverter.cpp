@@ -2,9 +2,11 @@
 
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/core/bits_math.h>
+#include <strict_files/OptionList.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
@@ -164,6 +166,23 @@ void LabeledScan::countLabels() {
     counts.labeled += std::any_of(row, row + k, [](float p) { return p > 0; });
 }
 
+std::uint32_t rawIdOf(double number) {
+  if (!(number >= 0 && number <= 4294967295.0 && number == std::floor(number)))
+    throw std::invalid_argument("label " + strict_files::textOf(number) + " is no class id");
+  return static_cast<std::uint32_t>(number);
+}
+
+ClassId classOfRawId(std::uint32_t rawId, const ClassTable& table) {
+  return rawId == 0 && table.folds().count(0) == 0 ? kNoClass : table.fromRaw(rawId);
+}
+
+std::vector<float> timesOfPoints(const std::vector<double>& seconds) {
+  constexpr double kLongest = 1;  // s
+  const bool areTimes =
+      std::all_of(seconds.begin(), seconds.end(), [](double t) { return std::abs(t) <= kLongest; });
+  return areTimes ? std::vector<float>(seconds.begin(), seconds.end()) : std::vector<float>();
+}
+
 namespace {
 
 /** Class of the table for each class of an observation. */
@@ -227,9 +246,8 @@ std::vector<ClassId> classesOf(const std::vector<semantic_types::Color>& colors,
 }  // namespace
 
 void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
-  const bool zeroIsNone = m_table.folds().count(0) == 0;
   for (const std::uint32_t id : named.rawIds)
-    named.cloud.classes.push_back(id == 0 && zeroIsNone ? kNoClass : m_table.fromRaw(id));
+    named.cloud.classes.push_back(classOfRawId(id, m_table));
   if (named.cloud.classes.empty() && named.cloud.probabilities.empty())
     named.cloud.classes = classesOf(named.colors, m_table);
   const auto& from = named.cloud;

@@ -192,7 +192,6 @@ Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
 }
 
 namespace fs = std::filesystem;
-using mrpt::obs::CObservation;
 
 namespace {
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <optional>
 #include <sstream>
@@ -246,15 +245,8 @@ void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
   std::vector<std::uint8_t> png;
   if (!cv::imencode(".png", picture, png))
     throw std::runtime_error("cannot encode the picture for '" + file.string() + "'");
-  strict_files::StagedFile staged(file);
-  std::ofstream out(staged.path(), std::ios::binary);
-  out.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
-  out.close();
-  if (!out) throw std::runtime_error("cannot write '" + file.string() + "'");
-  staged.commit();
+  strict_files::writeText(file, {png.begin(), png.end()});
 }
-
-using semantic_octree::SemanticOcTree;
 
 namespace {
 

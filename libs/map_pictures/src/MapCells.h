@@ -126,10 +126,6 @@ struct Extent {
 };
 Extent extentOf(const std::vector<MapCell>& cells);
 
-/** The height under the lowest ceiling if the cells are those of an indoor map: if most columns end
- * in a surface at nearly one height with room to stand below. Infinite otherwise. */
-double heightUnderCeiling(const std::vector<MapCell>& cells);
-
 /** The color of a pixel in stripes along a diagonal: those of the color, and paler ones.
  * \param x, y of the pixel, not negative \param period from one stripe to the next, pixels */
 inline cv::Vec3b hatched(const cv::Vec3b& color, int x, int y, int period) {

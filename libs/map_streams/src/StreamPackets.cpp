@@ -9,10 +9,8 @@
 #include <array>
 #include <cstring>
 #include <deque>
-#include <ostream>
 #include <sstream>
 #include <stdexcept>
-#include <streambuf>
 
 #include "Bytes.h"
 
@@ -87,26 +85,6 @@ class PartWindow {
   std::deque<TreePart> m_unpacked;  ///< from there on
 };
 
-/** The checksum of what is written into it. */
-class Crc : public std::streambuf {
- public:
-  std::uint32_t value() const { return m_crc; }
-
- protected:
-  std::streamsize xsputn(const char* bytes, std::streamsize number) override {
-    m_crc = extendCrc(m_crc, bytes, static_cast<std::size_t>(number));
-    return number;
-  }
-  int_type overflow(int_type byte) override {
-    const char c = traits_type::to_char_type(byte);
-    xsputn(&c, 1);
-    return traits_type::not_eof(byte);
-  }
-
- private:
-  std::uint32_t m_crc = 0;
-};
-
 /** Fills packets, one behind the other. */
 class Packer {
  public:
@@ -168,10 +146,6 @@ class Packer {
   const PartCoder& m_coder;
   std::size_t m_maxBytes, m_last = 64;
 };
-
-}  // namespace
-
-namespace {
 
 template <class Bytes>
 void codeHeader(Bytes& bytes, PacketHeader& h) {
@@ -272,10 +246,8 @@ std::string fileOf(const SemanticOcTree& map) {
 }
 
 std::uint32_t checksumOf(const SemanticOcTree& map) {
-  Crc crc;
-  std::ostream out(&crc);
-  writeTree(out, map);
-  return crc.value();
+  const std::string file = fileOf(map);
+  return extendCrc(0, file.data(), file.size());
 }
 
 std::vector<PacketContent> packetsOf(const TreeParts& parts, const PartCoder& coder,

@@ -73,6 +73,16 @@ struct NamedCloud {
   std::vector<float> times = {};
 };
 
+/** A raw id that a field of points or pixels has as a number.
+ * \throw std::invalid_argument naming what is no whole number of 32 bits. */
+std::uint32_t rawIdOf(double number);
+/** ClassTable::fromRaw() for fields of points and pixels, where 0 is no class unless the table
+ * folds it. */
+semantic_types::ClassId classOfRawId(std::uint32_t rawId, const semantic_types::ClassTable& table);
+/** Times of a scan's points. None if one is more than a second from the scan: who wrote them means
+ * something else. \param seconds after the scan's time */
+std::vector<float> timesOfPoints(const std::vector<double>& seconds);
+
 /** Reads the points of some classes of observations. ScanConverter knows labeled clouds, point
  * clouds, Velodyne packets and plane scanners by such sources; others are added. */
 class PointSource {

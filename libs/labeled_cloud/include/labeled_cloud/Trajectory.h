@@ -22,6 +22,10 @@ inline Eigen::Isometry3d toEigen(const mrpt::poses::CPose3D& pose) {
   return T;
 }
 
+inline mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& T) {
+  return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T.matrix()));
+}
+
 /** A time in seconds since 1970, as data sets write it.
  * \throw std::invalid_argument it is not finite, or beyond what MRPT's clock can tell. */
 inline mrpt::Clock::time_point timeOfSeconds(double seconds) {
