@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "RoadInGrass.h"
-#include "TreeMessages.h"
+#include "MapMessages.h"
 
 namespace {
 
