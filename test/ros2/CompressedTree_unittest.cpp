@@ -6,8 +6,8 @@
 #include <random>
 #include <sstream>
 
-#include "RoadInGrass.h"
 #include "MapMessages.h"
+#include "RoadInGrass.h"
 
 namespace {
 
