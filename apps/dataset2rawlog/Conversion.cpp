@@ -28,6 +28,11 @@ mrpt::Clock::time_point timeOf(double seconds, const strict_files::TextLine& lin
   throw std::runtime_error(line.where + ": " + e.what());
 }
 
+std::string sixDigits(std::size_t number) {
+  const std::string digits = std::to_string(number);
+  return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
+}
+
 std::filesystem::path imagesOf(const std::filesystem::path& rawlog) {
   return std::filesystem::absolute(rawlog).parent_path() / (rawlog.stem().string() + "_Images");
 }

@@ -109,6 +109,9 @@ class Output {
  */
 mrpt::Clock::time_point timeOf(double seconds, const strict_files::TextLine& line);
 
+/** A frame's number as names of files have it: 000012. */
+std::string sixDigits(std::size_t number);
+
 /** The folder of the images of a rawlog: X_Images for X.rawlog. */
 std::filesystem::path imagesOf(const std::filesystem::path& rawlog);
 
@@ -147,13 +150,15 @@ struct BagChoice {
    * that the bag has. */
   std::vector<std::string> topics;
   std::string labelField = "label";  ///< of clouds: raw ids of the class table; "rgb": its colors
-  /** Topic of label images for depth images; empty: the only one with "label" in its name. */
+  /** Topic of label images for depth images; empty: the only one with "label" in its name. Or a
+   * folder of label images (labeled_cloud::LabelFolder): named by their times, or by the number of
+   * the scan, of six digits. */
   std::string labelImages;
 };
 
 /** A bag of ROS 2: .mcap, .db3, or a folder of these. Clouds (sensor_msgs/PointCloud2) become
  * CObservationLabeledCloud, depth images (sensor_msgs/Image with the CameraInfo beside them, and
- * label images of their stamp) CObservation3DRangeScan, laser scans (sensor_msgs/LaserScan)
+ * label images) CObservation3DRangeScan, laser scans (sensor_msgs/LaserScan)
  * CObservation2DRangeScan, each behind a CObservationRobotPose. The robot is the frame that moves,
  * from the sensor's upwards; the map's frame is the highest that /tf knows, or that of odometry
  * (nav_msgs/Odometry) where /tf does not tell. Where nothing moves there are no poses.

@@ -1,11 +1,14 @@
 #include <labeled_cloud/Trajectory.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CObservationImage.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <map>
+#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -140,18 +143,30 @@ mrpt::obs::CObservation2DRangeScan laserScanOf(const point_fields::RawLaserScan&
   return scan;
 }
 
+/** Label images by the number of the scan, if one is named so; else by their time. */
+labeled_cloud::LabelFolder folderOf(const fs::path& folder, const ClassTable& table) {
+  labeled_cloud::LabelFolderOptions options;
+  for (const auto& file : fs::directory_iterator(folder))
+    if (std::regex_match(file.path().stem().string(), std::regex("\\d{6}")))
+      options.match = labeled_cloud::LabelFolderOptions::Match::Name;
+  return {folder, table, options};
+}
+
 /** Writes the scans of a bag. */
 class BagScans {
  public:
-  /** \param labelImages their topic; empty: depth images come without labels */
-  BagScans(const BagContents& contents, const std::string& labelField, std::string labelImages,
+  /** \param labelTopic of label images; empty: they are in a folder, or there are none */
+  BagScans(const BagContents& contents, const BagChoice& choice, std::string labelTopic,
            const Conversion& conversion)
       : m_contents(contents),
         m_table(conversion.classes.empty() ? ClassTable()
                                            : semantic_types::loadClassTable(conversion.classes)),
-        m_labelField(conversion.labels ? labelField : ""),
-        m_labelTopic(std::move(labelImages)),
-        m_output(conversion, m_table) {}
+        m_labelField(conversion.labels ? choice.labelField : ""),
+        m_labelTopic(std::move(labelTopic)),
+        m_output(conversion, m_table) {
+    if (conversion.labels && fs::is_directory(choice.labelImages))
+      m_labelFolder = folderOf(choice.labelImages, m_table);
+  }
 
   /** Label images are those of the depth images with their stamp, which wait for them. */
   void add(const BagTopic& topic, std::string_view message) {
@@ -237,21 +252,33 @@ class BagScans {
   void writeDepth(const Waiting& waiting) {
     const bags::BagImage message = bags::imageOfMessage(waiting.message);
     auto scan = point_fields::depthOf(message.pixels, m_contents.cameraOf(waiting.topic.name));
-    const auto labels = m_labels.find(message.stamp);
-    if (takesLabels(waiting) && labels == m_labels.end()) return m_output.skip();
+    auto classes = classesFor(waiting, message);
+    if (!classes && (m_labelFolder || takesLabels(waiting))) return m_output.skip();
     const auto T_robot_optical = place(message);
     if (!T_robot_optical) return m_output.skip();
     scan.timestamp = timeOf(message);
     scan.sensorLabel = waiting.topic.name;
     scan.sensorPose = poseOf(*T_robot_optical * point_fields::T_optical_camera());
-    std::optional<labeled_cloud::LabelImage> classes;
-    std::string problem;
-    if (takesLabels(waiting))
-      classes =
-          point_fields::labelsOf(bags::imageOfMessage(labels->second).pixels, m_table, problem);
-    if (!problem.empty()) throw std::runtime_error(m_labelTopic + ": " + problem);
-    m_labels.erase(m_labels.begin(), m_labels.upper_bound(message.stamp));
     m_output.writeDepth(scan, std::move(classes));
+  }
+
+  /** The classes of a depth image's pixels, from the folder or the topic. */
+  std::optional<labeled_cloud::LabelImage> classesFor(const Waiting& depth,
+                                                      const bags::BagHeader& seen) {
+    if (m_labelFolder) {
+      mrpt::obs::CObservationImage named;
+      named.timestamp = timeOf(seen);
+      named.image.setExternalStorage(sixDigits(depth.number));
+      return m_labelFolder->label(named);
+    }
+    const auto labels = m_labels.find(seen.stamp);
+    if (!takesLabels(depth) || labels == m_labels.end()) return std::nullopt;
+    std::string problem;
+    auto classes =
+        point_fields::labelsOf(bags::imageOfMessage(labels->second).pixels, m_table, problem);
+    if (!problem.empty()) throw std::runtime_error(m_labelTopic + ": " + problem);
+    m_labels.erase(m_labels.begin(), std::next(labels));
+    return classes;
   }
 
   static mrpt::Clock::time_point timeOf(const bags::BagHeader& header) {
@@ -273,6 +300,7 @@ class BagScans {
   const BagContents& m_contents;
   ClassTable m_table;
   std::string m_labelField, m_labelTopic;
+  std::optional<labeled_cloud::LabelFolder> m_labelFolder;
   std::map<bags::Stamp, std::string> m_labels;  ///< messages
   std::deque<Waiting> m_waiting;
   std::size_t m_number = 0;
@@ -287,9 +315,10 @@ Summary convertRosbag2(const fs::path& bag, const BagChoice& choice, const Conve
   const bool hasDepth = std::any_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
     return isIn(contents.depths, name);
   });
-  const std::string labels =
-      conversion.labels && hasDepth ? contents.topicOfLabels(choice.labelImages) : "";
-  BagScans scans(contents, choice.labelField, labels, conversion);
+  const std::string labels = conversion.labels && hasDepth && !fs::is_directory(choice.labelImages)
+                                 ? contents.topicOfLabels(choice.labelImages)
+                                 : "";
+  BagScans scans(contents, choice, labels, conversion);
   const auto isWanted = [&](const BagTopic& topic) {
     return (topic.name == labels && topic.type == bags::kImage) || isIn(wanted, topic.name);
   };

@@ -272,11 +272,6 @@ void readLabels(const fs::path& file, const ClassTable& table, LabeledCloud& clo
     }
 }
 
-std::string sixDigits(std::size_t number) {
-  const std::string digits = std::to_string(number);
-  return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
-}
-
 /** SemanticKITTI's poses, or KITTI's own: sequences/00 has poses/00.txt. */
 fs::path posesOf(const fs::path& sequence) {
   const fs::path folder = fs::weakly_canonical(sequence);

@@ -131,7 +131,8 @@ struct Cli {
         ->type_name("NAME");
     command
         ->add_option("--label-images", bag.labelImages,
-                     "Topic of the depth images' labels, if none has 'label' in its name")
+                     "Topic of the depth images' labels, if none has 'label' in its name, or a "
+                     "folder of images named by time (12.250.png) or frame (000012.png)")
         ->type_name("NAME");
     command->add_option("BAG", source, "A file (.mcap, .db3), or a folder of these")->required();
   }

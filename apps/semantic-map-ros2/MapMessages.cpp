@@ -5,6 +5,7 @@
 #include <semantic_types/ClassTable.h>
 
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 namespace semantic_map_ros2 {
@@ -15,11 +16,24 @@ using semantic_octree::SemanticOcTree;
 namespace {
 
 constexpr std::int32_t kCubeList = 6, kAdd = 0, kDelete = 2;
+const std::string kOccupancy = "OcTree";  // OctoMap's, beside TreeTeller::kId
 
 /** A block has ten bits an axis. */
 std::int32_t idOf(std::uint64_t block) {
   return static_cast<std::int32_t>((block >> 32 & 1023) << 20 | (block >> 16 & 1023) << 10 |
                                    (block & 1023));
+}
+
+void write(ros2::Publication<ros2::Octomap>& to, const ros2::Header& header, const std::string& id,
+           const SemanticOcTree& map, std::string bytes) {
+  ros2::Octomap message{};
+  message.header = header;
+  message.binary = id == kOccupancy;
+  message.id = ros2::textOf(id);
+  message.resolution = map.getResolution();
+  message.data._length = message.data._maximum = static_cast<std::uint32_t>(bytes.size());
+  message.data._buffer = reinterpret_cast<std::uint8_t*>(bytes.data());
+  to.write(message);
 }
 
 }  // namespace
@@ -109,16 +123,74 @@ void MapMessages::publishOctomap(Stamp stamp) {
   const auto tree = toOcTree(m_map);
   tree->toMaxLikelihood();
   tree->writeBinaryData(bytes);
-  std::string data = bytes.str();
-  const std::string id = "OcTree";
-  ros2::Octomap message{};
-  message.header = ros2::headerOf(stamp, m_frame);
-  message.binary = true;
-  message.id = ros2::textOf(id);
-  message.resolution = m_map.getResolution();
-  message.data._length = message.data._maximum = static_cast<std::uint32_t>(data.size());
-  message.data._buffer = reinterpret_cast<std::uint8_t*>(data.data());
-  m_writesOctomap.write(message);
+  write(m_writesOctomap, ros2::headerOf(stamp, m_frame), kOccupancy, m_map, bytes.str());
+}
+
+TreeMessages::TreeMessages(ros2::Node& node, semantic_octree::SemanticOcTree& map,
+                           std::string frame)
+    : m_map(map),
+      m_frame(std::move(frame)),
+      m_teller(map),
+      m_writesChanges(node, "~/change", {true, false, TreeTeller::kMostChanges}),
+      m_writesAll(node, "~/compressed", {true, false, 1}) {}
+
+void TreeMessages::publish(ros2::Stamp stamp) {
+  const auto writer = [&](ros2::Publication<ros2::Octomap>& to) {
+    return [this, &to, stamp](std::string data) {
+      write(to, ros2::headerOf(stamp, m_frame), TreeTeller::kId, m_map, std::move(data));
+    };
+  };
+  const TreeTeller::Write all = writer(m_writesAll);
+  m_teller.tell(isRead(), writer(m_writesChanges), isAsked() ? all : nullptr);
+}
+
+TreeReader::TreeReader(ros2::Node& node, const std::string& of)
+    : m_node(node),
+      m_allName(of + "/compressed"),
+      m_hearsChanges(node, of + "/change", {true, false, TreeTeller::kMostChanges},
+                     [this](const Message& message) { take(message, false); }) {}
+
+void TreeReader::take(const Message& message, bool isAll) {
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  m_isAnswered |= isAll;
+  try {
+    if (ros2::textOf(message->id) != TreeTeller::kId)
+      throw std::runtime_error("a message of '" + ros2::textOf(message->id) + "', expected " +
+                               TreeTeller::kId);
+    m_isLacking = !m_copy.accept(
+        {reinterpret_cast<const char*>(message->data._buffer), std::size_t(message->data._length)});
+    m_hasMap |= !m_isLacking;
+  } catch (const std::exception& e) {
+    m_problem = e.what();
+    m_isLacking = true;
+  }
+}
+
+std::string TreeReader::look() {
+  bool isToAsk, isDone;
+  {
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    isDone = !m_isLacking;
+    isToAsk = m_isLacking && m_isAnswered;
+    if (isToAsk) m_isAnswered = false;
+  }
+  if (isDone || isToAsk) m_hearsAll.reset();
+  if (isToAsk)
+    m_hearsAll.emplace(m_node, m_allName, ros2::Qos{true, false, 1},
+                       [this](const Message& message) { take(message, true); });
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  return std::exchange(m_problem, {});
+}
+
+bool TreeReader::isCurrent() const {
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  return m_copy.isCurrent();
+}
+
+std::optional<semantic_octree::SemanticOcTree> TreeReader::map() const {
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  if (!m_hasMap) return std::nullopt;
+  return m_copy.map();
 }
 
 }  // namespace semantic_map_ros2

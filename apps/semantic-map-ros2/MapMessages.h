@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -37,6 +39,54 @@ class MapMessages {
   ros2::Publication<ros2::MarkerArray> m_writesMarkers;
   ros2::Publication<ros2::PointCloud2> m_writesPoints;
   ros2::Publication<ros2::Octomap> m_writesOctomap;
+};
+
+/** A map's compressed tree for those who keep a copy: `~/change` has what changed, `~/compressed`
+ * all of it, for who comes late or lost a change. */
+class TreeMessages {
+ public:
+  /** Node and map must outlive it. \param frame of the map */
+  TreeMessages(ros2::Node& node, semantic_octree::SemanticOcTree& map, std::string frame);
+
+  /** Somebody came who has nothing yet. */
+  bool isAsked() { return m_writesAll.hasNewReader(); }
+  bool isRead() const { return m_writesChanges.isRead() || m_writesAll.isRead(); }
+  /** The map is not to change meanwhile. Nothing is made that nobody reads.
+   * \throw std::logic_error the map has no abstraction */
+  void publish(ros2::Stamp stamp);
+
+ private:
+  semantic_octree::SemanticOcTree& m_map;
+  std::string m_frame;
+  TreeTeller m_teller;
+  ros2::Publication<ros2::Octomap> m_writesChanges, m_writesAll;
+};
+
+/** A copy of the compressed tree that another node publishes. */
+class TreeReader {
+ public:
+  /** \param of the other node's name, "/semantic_map" */
+  TreeReader(ros2::Node& node, const std::string& of);
+
+  /** To be called now and then: asks for all of the tree if something is missing.
+   * \return what is wrong with a message that came since, if anything is */
+  std::string look();
+  /** See TreeCopy. Any thread may ask. */
+  bool isCurrent() const;
+  std::optional<semantic_octree::SemanticOcTree> map() const;
+
+ private:
+  using Message = std::shared_ptr<const ros2::Octomap>;
+  void take(const Message& message, bool isAll);
+
+  ros2::Node& m_node;
+  std::string m_allName;
+  mutable std::mutex m_mutex;
+  semantic_octree::TreeCopy m_copy;
+  bool m_hasMap = false, m_isLacking = true, m_isAnswered = true;  ///< by all of it
+  std::string m_problem;
+  std::optional<ros2::Subscription<ros2::Octomap>> m_hearsAll;  ///< while something is missing
+  ros2::Subscription<ros2::Octomap> m_hearsChanges;
 };
 
 }  // namespace semantic_map_ros2

@@ -11,7 +11,6 @@
 #include "MapMessages.h"
 #include "Sensors.h"
 #include "Terminal.h"
-#include "TreeMessages.h"
 
 namespace semantic_map_ros2 {
 

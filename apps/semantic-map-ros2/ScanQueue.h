@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "NodeOptions.h"
+#include "Parameters.h"
 #include "point_fields/Frames.h"
 
 namespace semantic_map_ros2 {

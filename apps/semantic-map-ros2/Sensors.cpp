@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "point_fields/PointFields.h"
@@ -35,19 +36,6 @@ RawCloud rawOf(const ros2::PointCloud2& message) {
   raw.isBigEndian = message.is_bigendian;
   raw.data = message.data._buffer, raw.size = message.data._length;
   return raw;
-}
-
-SensorScan read(const ros2::LaserScan& message) {
-  const point_fields::RawLaserScan raw{
-      message.angle_min,
-      message.angle_increment,
-      message.time_increment,
-      message.range_min,
-      message.range_max,
-      {message.ranges._buffer, message.ranges._buffer + message.ranges._length}};
-  SensorScan scan;
-  scan.cloud = cloudOf(raw, scan.times);
-  return scan;
 }
 
 RawImage rawOf(const ros2::Image& message) {
@@ -109,15 +97,19 @@ Sensors::Sensors(ros2::Node& node, const NodeOptions& options, const ClassTable&
                         const std::lock_guard<std::mutex> lock(m_mutex);
                         m_speeds = {message->twist.twist.linear.x, message->twist.twist.angular.z};
                       }),
-      m_hearsPoints(node, "points", kSensor, [this](auto message) { addCloud(message); }),
-      m_hearsLaser(node, "scan", kSensor, [this](auto message) { addLaser(message); }),
+      m_hearsPoints(node, "points", kSensor,
+                    [this](auto message) { add(m_hearsPoints, message, message->data._length); }),
+      m_hearsLaser(
+          node, "scan", kSensor,
+          [this](auto message) { add(m_hearsLaser, message, 4 * message->ranges._length); }),
       m_hearsCamera(node, "depth/camera_info", kSensor,
                     [this](auto message) {
                       const std::lock_guard<std::mutex> lock(m_mutex);
                       m_camera = message;
                     }),
       m_hearsLabels(node, "labels/image", kSensor, [this](auto message) { addLabels(message); }),
-      m_hearsDepth(node, "depth/image", kSensor, [this](auto message) { addDepth(message); }) {}
+      m_hearsDepth(node, "depth/image", kSensor,
+                   [this](auto message) { add(m_hearsDepth, message, message->data._length); }) {}
 
 Sensors::~Sensors() = default;
 
@@ -145,36 +137,20 @@ void Sensors::addTransforms(const ros2::TFMessage& message, Kind kind) {
   m_queue.wake();
 }
 
-void Sensors::add(WaitingScan scan, const ros2::Header& header, std::size_t bytes) {
-  scan.frame = textOf(header.frame_id);
-  scan.stamp = ros2::stampOf(header.stamp);
+template <class Message>
+void Sensors::add(const ros2::Subscription<Message>& from, std::shared_ptr<const Message> message,
+                  std::size_t bytes) {
+  WaitingScan scan;
+  scan.topic = from.name();
+  scan.frame = textOf(message->header.frame_id);
+  scan.stamp = ros2::stampOf(message->header.stamp);
   scan.bytes = bytes;
+  if constexpr (std::is_same_v<Message, ros2::Image>) {
+    scan.T_frame_points = point_fields::T_optical_camera();
+    scan.isComplete = [this, stamp = scan.stamp] { return hasLabels(stamp); };
+  }
+  scan.read = [this, message] { return read(*message); };
   m_queue.push(std::move(scan));
-}
-
-void Sensors::addCloud(std::shared_ptr<const ros2::PointCloud2> message) {
-  WaitingScan scan;
-  scan.topic = m_hearsPoints.name();
-  scan.read = [this, message] { return read(*message); };
-  add(std::move(scan), message->header, message->data._length);
-}
-
-void Sensors::addLaser(std::shared_ptr<const ros2::LaserScan> message) {
-  WaitingScan scan;
-  scan.topic = m_hearsLaser.name();
-  scan.read = [message] { return semantic_map_ros2::read(*message); };
-  add(std::move(scan), message->header, 4 * std::size_t(message->ranges._length));
-}
-
-void Sensors::addDepth(Depth message) {
-  WaitingScan scan;
-  scan.topic = m_hearsDepth.name();
-  scan.T_frame_points = point_fields::T_optical_camera();
-  scan.isComplete = [this, stamp = ros2::stampOf(message->header.stamp)] {
-    return hasLabels(stamp);
-  };
-  scan.read = [this, message] { return read(*message); };
-  add(std::move(scan), message->header, message->data._length);
 }
 
 void Sensors::addLabels(std::shared_ptr<const ros2::Image> message) {
@@ -197,6 +173,19 @@ SensorScan Sensors::read(const ros2::PointCloud2& message) {
   scan.cloud = cloudOf(rawOf(message), m_options.classField, m_classes, problem);
   scan.times = timesOf(rawOf(message), ros2::secondsOf(ros2::stampOf(message.header.stamp)));
   if (!problem.empty()) m_complaints.say(m_hearsPoints.name() + ": " + problem);
+  return scan;
+}
+
+SensorScan Sensors::read(const ros2::LaserScan& message) {
+  const point_fields::RawLaserScan raw{
+      message.angle_min,
+      message.angle_increment,
+      message.time_increment,
+      message.range_min,
+      message.range_max,
+      {message.ranges._buffer, message.ranges._buffer + message.ranges._length}};
+  SensorScan scan;
+  scan.cloud = cloudOf(raw, scan.times);
   return scan;
 }
 

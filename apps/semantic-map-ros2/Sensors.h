@@ -46,11 +46,10 @@ class Sensors {
 
  private:
   class PixelLabels;
-  using Depth = std::shared_ptr<const ros2::Image>;
-  void add(WaitingScan scan, const ros2::Header& header, std::size_t bytes);
-  void addCloud(std::shared_ptr<const ros2::PointCloud2> message);
-  void addLaser(std::shared_ptr<const ros2::LaserScan> message);
-  void addDepth(Depth message);
+  /** Puts a scan into the queue. */
+  template <class Message>
+  void add(const ros2::Subscription<Message>& from, std::shared_ptr<const Message> message,
+           std::size_t bytes);
   void addLabels(std::shared_ptr<const ros2::Image> message);
   template <class Message, class Vector, class Rotation>
   void add(const Message& message, const Vector& translation, const Rotation& rotation,
@@ -58,6 +57,7 @@ class Sensors {
   void addTransforms(const ros2::TFMessage& message, point_fields::Frames::Kind kind);
   bool hasLabels(ros2::Stamp stamp) const;
   semantic_slam::SensorScan read(const ros2::PointCloud2& message);
+  static semantic_slam::SensorScan read(const ros2::LaserScan& message);
   semantic_slam::SensorScan read(const ros2::Image& depth);
 
   const NodeOptions& m_options;

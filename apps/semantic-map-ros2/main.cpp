@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "Application.h"
+#include "MapMessages.h"
 #include "MappingNode.h"
-#include "TreeMessages.h"
 #include "inputs/Inputs.h"
 
 namespace semantic_map_ros2 {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <opencv2/imgcodecs.hpp>
 
 #include "BagWriter.h"
 #include "ConvertedScans.h"
@@ -196,6 +197,33 @@ TEST_F(Rosbag2, depthImagesHaveTheLabelsOfTheirStampThoughTheseComeLater) {
     expectDepth(scans[1], 3);
     EXPECT_EQ(scans[0].scan.sensorLabel, "/cam/depth/image");
   }
+}
+
+TEST_F(Rosbag2, depthImagesHaveTheLabelsOfAFolderByTimeOrByTheirNumber) {
+  auto bag = cameraDrive();
+  for (const double seconds : {101., 102., 103.}) bag.push_back(depthImage(seconds));
+  bag.push_back(labelImage(102));  // the folder counts
+  const std::string file = quoted(folder.write("a.mcap", mcapOf(bag, "zstd")));
+  cv::Mat ids(2, kWidth, CV_8UC1, cv::Scalar(40));
+  ids.at<std::uint8_t>(0, 0) = 70;
+  for (const auto& names : {std::array{"101.0", "103.01"}, std::array{"000000", "000002"}}) {
+    const TemporaryFolder labels;
+    for (const char* name : names)
+      cv::imwrite((labels / (std::string(name) + ".png")).string(), ids);
+    const std::string given = "--label-images " + quoted(labels.path()) + " ";
+    const auto scans = scansOf(given + file, folder);
+    ASSERT_EQ(scans.size(), 2u) << names[0];
+    expectDepth(scans[0], 1);
+    expectDepth(scans[1], 3);
+    const auto odd = scansOf("--frames 1:1: " + given + file, folder);
+    ASSERT_EQ(odd.size(), 1u) << names[0];
+    expectDepth(odd[0], 3);
+    EXPECT_EQ(scansOf("--no-labels " + given + file, folder).at(1).scan.counts.labeled, 0u);
+  }
+  EXPECT_TRUE(contains(messageOf("--classes " + quoted(folder / "classes.yaml") +
+                                     " --label-images " + quoted(folder.path()) + " " + file,
+                                 folder),
+                       "no label image in this folder"));
 }
 
 TEST_F(Rosbag2, depthImagesMayBeMetersAndComeWithoutLabels) {

@@ -16,7 +16,7 @@
 
 #include <utility>
 
-#include "semantic-map-ros2/NodeOptions.h"
+#include "semantic-map-ros2/Parameters.h"
 #include "simulated_drive/DriveConfig.h"
 
 using strict_files::Option;

@@ -6,8 +6,8 @@
 #include <random>
 #include <sstream>
 
+#include "MapMessages.h"
 #include "RoadInGrass.h"
-#include "TreeMessages.h"
 
 namespace {
 

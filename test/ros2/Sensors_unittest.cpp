@@ -20,6 +20,25 @@ const std::string kTwoClasses =
 
 Isometry3d at(double x, double y, double z) { return Isometry3d(Translation3d(x, y, z)); }
 
+ros2::Odometry odometryAt(Stamp stamp, double x) {
+  static const std::string odom = "odom", base = "base_link";
+  ros2::Odometry pose{};
+  pose.header = ros2::headerOf(stamp, odom);
+  pose.child_frame_id = ros2::textOf(base);
+  pose.pose.pose.position.x = x;
+  pose.pose.pose.orientation.w = 1;
+  return pose;
+}
+
+/** Beams from ahead to the left, 22.5 degrees apart. */
+ros2::LaserScan laserScan(const std::vector<float>& ranges) {
+  ros2::LaserScan scan{};
+  scan.angle_increment = float(M_PI / 8);
+  scan.range_min = 0.1f, scan.range_max = 20;
+  ros2::refer(scan.ranges, ranges);
+  return scan;
+}
+
 /** Voxels of 0.2 m, poses in "map". */
 class LiveSensors : public testing::Test {
  protected:
@@ -43,23 +62,15 @@ class LiveSensors : public testing::Test {
 
 TEST_F(LiveSensors, laserScansAndOdometry) {
   start({"-p", "map_frame:=odom", "-r", "scan:=/front/laser", "-r", "odom:=/wheels"});
-  const std::string odom = "odom", base = "base_link", frame = "laser";
-  live->place(base, frame, at(0.1, 0, 0.5), 0, true);
+  const std::string frame = "laser";
+  live->place("base_link", frame, at(0.1, 0, 0.5), 0, true);
   ros2::Publication<ros2::Odometry> odometry(live->node(), "/wheels", {});
   ros2::Publication<ros2::LaserScan> scans(live->node(), "/front/laser",
                                            {false, false, 5});  // best effort
-  std::vector<float> ranges = {2, INFINITY, NAN, 0.01f, 3};
-  ros2::LaserScan scan{};
+  const std::vector<float> ranges = {2, INFINITY, NAN, 0.01f, 3};
+  ros2::LaserScan scan = laserScan(ranges);
   scan.header = ros2::headerOf(5 * kSecond, frame);
-  scan.angle_min = 0, scan.angle_increment = float(M_PI / 8);
-  scan.range_min = 0.1f, scan.range_max = 20;
-  ros2::refer(scan.ranges, ranges);
-  ros2::Odometry pose{};
-  pose.header = ros2::headerOf(5 * kSecond, odom);
-  pose.child_frame_id = ros2::textOf(base);
-  pose.pose.pose.position.x = 10;
-  pose.pose.pose.orientation.w = 1;
-  live->send(odometry, pose);
+  live->send(odometry, odometryAt(5 * kSecond, 10));
   // A reliable reader does not match: it changes when it has seen that.
   EXPECT_TRUE(live->waitFor([&] {
     if (scans.isRead()) scans.write(scan);
@@ -73,21 +84,14 @@ TEST_F(LiveSensors, laserScansAndOdometry) {
 
 TEST_F(LiveSensors, beamsOfALaserThatTakeTimeAreSeenFromWhereTheRobotIsByThen) {
   start({"-p", "map_frame:=odom"});
-  const std::string odom = "odom", base = "base_link";
+  const std::string base = "base_link";
   ros2::Publication<ros2::Odometry> odometry(live->node(), "odom", {});
   ros2::Publication<ros2::LaserScan> scans(live->node(), "scan", {true, false, 5});
-  ros2::LaserScan scan{};
-  scan.angle_increment = float(M_PI / 8), scan.time_increment = 0.125f;
-  scan.range_min = 0.1f, scan.range_max = 20;
-  std::vector<float> ranges = {2, 2, 2, 2, 3.1f};
-  ros2::refer(scan.ranges, ranges);
+  const std::vector<float> ranges = {2, 2, 2, 2, 3.1f};
+  ros2::LaserScan scan = laserScan(ranges);
+  scan.time_increment = 0.125f;
   for (int second : {5, 6}) {  // at 1 m/s along x
-    ros2::Odometry pose{};
-    pose.header = ros2::headerOf(second * kSecond, odom);
-    pose.child_frame_id = ros2::textOf(base);
-    pose.pose.pose.position.x = second;
-    pose.pose.pose.orientation.w = 1;
-    live->send(odometry, pose);
+    live->send(odometry, odometryAt(second * kSecond, second));
     scan.header = ros2::headerOf(second * kSecond, base);
     live->send(scans, scan);
   }

@@ -150,15 +150,17 @@ TEST(Mapper, agesByTheTimeBetweenScansHoweverOftenItIsTold) {
   EXPECT_NEAR(often.clock(), 2.4, 1e-6) << "told first 0.3 s before the first scan";
 }
 
-TEST(Mapper, statesWhatLabelsAreWorthAsSoonAsFourScansSay) {
+TEST(Mapper, statesWhatLabelsOfFourScansAreWorthFromEightOnAndOfAllAtTheEnd) {
   for (const bool localize : {false, true}) {
-    SemanticOcTree map(0.2, wallsAndCars());
+    SemanticOcTree map(0.2, wallsAndCars()), byHand(0.2, wallsAndCars());
+    semantic_octree::Calibrator calibrator(0.2, 2);
+    std::vector<semantic_octree::Calibration> fits;
     MapperOptions options = localizing();
     options.localize = localize;
     Mapper mapper(map, options);
     std::mt19937 random(2);
-    for (int i = 0; i < 5; ++i) {
-      EXPECT_EQ(map.filterParameters().calibration.isIdentity(), i < 4);
+    for (int i = 0; i < 9; ++i) {
+      EXPECT_EQ(map.filterParameters().calibration.isIdentity(), i < 8);
       const auto T = planar(0.1 * i, 0, 0);
       LabeledCloud cloud = yardFrom(T);
       for (std::size_t first = 0; first < cloud.size(); first += 20)  // wrong as a whole
@@ -166,16 +168,22 @@ TEST(Mapper, statesWhatLabelsAreWorthAsSoonAsFourScansSay) {
           std::fill_n(cloud.classes.begin() + static_cast<std::ptrdiff_t>(first),
                       std::min<std::size_t>(20, cloud.size() - first), kCar);
       mapper.insert(cloud, Eigen::Isometry3d::Identity(), T, 0);
+      byHand.insert(cloud, T);
+      calibrator.add(cloud, T);
+      if (i == 3 || i == 7) byHand.setCalibration(fits.emplace_back(calibrator.fit(byHand)));
     }
-    const auto now = [&map] {
-      const auto& calibration = map.filterParameters().calibration;
+    const auto valuesOf = [](const semantic_octree::Calibration& calibration) {
       return std::pair(calibration.power, calibration.shared);
     };
-    const auto afterFour = now();
-    EXPECT_LT(afterFour.first, 0.8);
+    const auto afterEight = valuesOf(map.filterParameters().calibration);
+    EXPECT_LT(afterEight.first, 0.8);
     mapper.finish();
-    EXPECT_NE(now(), afterFour);
-    EXPECT_LT(now().first, 0.8);
+    const auto atEnd = valuesOf(map.filterParameters().calibration);
+    EXPECT_NE(atEnd, afterEight);
+    EXPECT_LT(atEnd.first, 0.8);
+    if (localize) continue;
+    EXPECT_EQ(afterEight, valuesOf(fits[0]));
+    EXPECT_EQ(atEnd, valuesOf(calibrator.fit(byHand)));
   }
 }
 

@@ -67,7 +67,12 @@ using Point = geometry_msgs_msg_dds__Point_;
 using Stamp = std::int64_t;
 inline Stamp stampOf(const Time& time) { return Stamp(time.sec) * 1'000'000'000 + time.nanosec; }
 inline double secondsOf(Stamp stamp) { return static_cast<double>(stamp) * 1e-9; }
-Time timeOf(Stamp stamp);
+inline Time timeOf(Stamp stamp) {
+  constexpr Stamp kSecond = 1'000'000'000;
+  const Stamp seconds = stamp / kSecond - (stamp % kSecond < 0);
+  return {static_cast<std::int32_t>(seconds),
+          static_cast<std::uint32_t>(stamp - seconds * kSecond)};
+}
 
 /** Texts of messages that are received may be null. */
 inline std::string textOf(const char* text) { return text ? text : ""; }
@@ -83,6 +88,8 @@ void refer(Sequence& sequence, const std::vector<Element>& elements) {
 }
 
 /** A header whose frame must live until the message is written. */
-Header headerOf(Stamp stamp, const std::string& frame);
+inline Header headerOf(Stamp stamp, const std::string& frame) {
+  return {timeOf(stamp), textOf(frame)};
+}
 
 }  // namespace ros2

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -112,26 +111,36 @@ std::vector<std::vector<double>> Calibrator::confusion(double accuracy) const {
   return process(accuracy, kLabelsOfMatrix).counts();
 }
 
-Calibration Calibrator::fit(const SemanticOcTree& map) const {
-  const Calibration& has = map.filterParameters().calibration;
+std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) const {
+  const Calibration has = map.filterParameters().calibration;
   std::size_t numLabels = 0;
   for (const auto& [voxel, labels] : m_voxels)
     numLabels += labels.size() - std::min(kFew, labels.size());
-  if (numLabels == 0) return has;
-  const LabelProcess process = this->process(map.filterParameters().accuracy, kLabelsOfFit);
-  CalibrationFit fit;
-  for (const auto& [voxel, labels] : std::map(m_voxels.begin(), m_voxels.end())) {
+  if (numLabels == 0) return [has] { return has; };
+  std::vector<std::pair<std::uint64_t, SemanticOcTree::Belief>> beliefs;
+  for (const auto& [voxel, labels] : m_voxels) {
     const SemanticOcTreeNode leaf = map.search(keyOf(voxel));
-    if (!leaf || !leaf.hasClassRecord() || leaf.getLogOdds() <= 0) continue;
-    fit.add(map.belief(leaf), process.classesOf(labels), static_cast<double>(labels.size()));
+    if (leaf && leaf.hasClassRecord() && leaf.getLogOdds() > 0)
+      beliefs.emplace_back(voxel, map.belief(leaf));
   }
-  if (fit.empty()) return has;
-  const Calibration found = fit.fit({0.7, 0.1});
-  const auto together = [numLabels](double had, double fits) {
-    const double mean = (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);
-    return std::round(kSteps * mean) / kSteps;
+  if (beliefs.empty()) return [has] { return has; };
+  return [has, numLabels, beliefs = std::move(beliefs), labels = *this,
+          accuracy = map.filterParameters().accuracy]() mutable {
+    std::sort(beliefs.begin(), beliefs.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    const LabelProcess process = labels.process(accuracy, kLabelsOfFit);
+    CalibrationFit fit;
+    for (const auto& [voxel, belief] : beliefs) {
+      const std::string& ofVoxel = labels.m_voxels.at(voxel);
+      fit.add(belief, process.classesOf(ofVoxel), static_cast<double>(ofVoxel.size()));
+    }
+    const Calibration found = fit.fit({0.7, 0.1});
+    const auto together = [numLabels](double had, double fits) {
+      const double mean = (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);
+      return std::round(kSteps * mean) / kSteps;
+    };
+    return Calibration{together(has.power, found.power), together(has.shared, found.shared)};
   };
-  return {together(has.power, found.power), together(has.shared, found.shared)};
 }
 
 }  // namespace semantic_octree

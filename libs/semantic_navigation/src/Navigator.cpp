@@ -330,7 +330,7 @@ bool Navigator::mayGuide() const {
 }
 
 void Navigator::guide(double seconds) {
-  CpuClock clock(CLOCK_PROCESS_CPUTIME_ID);  // searches have a thread, and nobody else works now
+  CpuClock clock(CLOCK_PROCESS_CPUTIME_ID);  // searches have a thread; others rarely do
   m_guidesNext = m_restsFirst = false;
   if (m_views && m_conclusion.empty() && isTimeToChoose()) chooseView();
   if (m_conclusion.empty()) m_guide->update(m_state, m_z, m_controller, seconds);

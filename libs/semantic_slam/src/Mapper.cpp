@@ -153,6 +153,17 @@ void Mapper::finish() {
   calibrate();
   if (m_slam) m_slam->finish();
   if (m_keyframes) moveKeyframes(-1);
+  stateCalibrated();
+}
+
+void Mapper::calibrate() {
+  stateCalibrated();
+  m_calibration = std::async(std::launch::async | std::launch::deferred,  // where no thread is left
+                             m_calibrator.fitLater(m_map));
+}
+
+void Mapper::stateCalibrated() {
+  if (m_calibration.valid()) m_map.setCalibration(m_calibration.get());
 }
 
 /** Moves keyframes whose points 10 m away are off by more than this; below 0: all keyframes. */

@@ -3,6 +3,7 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -39,7 +40,10 @@ class Calibrator {
   /** What makes -sum_k q_k ln(stated p(class k | occupied)) least over the voxels, q_k what their
    * labels say, each counting by its points. What the map has counts like 100 labels; labels count
    * from the third of a voxel on, for fewer cannot outvote each other. In steps of 1/256. */
-  Calibration fit(const SemanticOcTree& map) const;
+  Calibration fit(const SemanticOcTree& map) const { return fitLater(map)(); }
+  /** fit() in two parts: the map is read at once. The rest, which takes most of the time, is done
+   * by whoever calls what is returned, in any thread. */
+  std::function<Calibration()> fitLater(const SemanticOcTree& map) const;
   /** K x K expected counts for a confusion matrix: row is the true class, column the label. Beside
    * what was seen, 1000 labels of each class are right with probability `accuracy`, (1/K, 1). */
   std::vector<std::vector<double>> confusion(double accuracy) const;

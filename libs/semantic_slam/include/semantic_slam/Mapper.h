@@ -4,6 +4,7 @@
 #include <semantic_slam/Slam.h>
 
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -28,8 +29,9 @@ struct MapperOptions {
 
 /** Keeps a robot's map and where the robot is in it. Scans are registered to keyframes that do not
  * change, not to the map that is made of them: what a pose is wrong by does not come back as
- * evidence for it. What the map states is calibrated (Calibrator) after 4, 8, 16 ... scans, before
- * keyframes move, and at the end. It starts no thread. */
+ * evidence for it. What the map states is calibrated (Calibrator) by the labels until 4, 8, 16 ...
+ * scans, and until keyframes move. It starts one thread, which finds this out; the map states so
+ * from the next of these times on, on slow machines as on fast ones, and from finish() on. */
 class Mapper {
  public:
   /** With `localize`, an empty map must be changed by the mapper alone (but for its abstraction),
@@ -114,7 +116,8 @@ class Mapper {
                                             const semantic_octree::InsertionOptions& options,
                                             double secondsSince);
   void moveKeyframes(double meters);
-  void calibrate() { m_map.setCalibration(m_calibrator.fit(m_map)); }
+  void calibrate();
+  void stateCalibrated();
   double secondsUntil(double seconds) const;
 
   semantic_octree::SemanticOcTree& m_map;
@@ -131,7 +134,8 @@ class Mapper {
   int m_leftOut = 0;  ///< scans since the last that was inserted
   semantic_octree::Calibrator m_calibrator;
   std::size_t m_numScans = 0, m_calibrateAt = 4;
-  std::optional<double> m_agedAt;  ///< seconds
+  std::future<semantic_octree::Calibration> m_calibration;  ///< until the next is due
+  std::optional<double> m_agedAt;                           ///< seconds
 };
 
 }  // namespace semantic_slam
