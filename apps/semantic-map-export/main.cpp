@@ -300,19 +300,27 @@ bool hasScene(const std::vector<fs::path>& files) {
 
 /** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone
  * through. */
-void prepare(semantic_octree::MapFolder& folder, const Cli& cli) {
-  if (hasScene(cli.files)) folder.checkFits();
-  if (cli.options.points.smoothing.neighborWeight > 0) folder.bringAll();
+void prepare(semantic_octree::StoredMap& map, const Cli& cli) {
+  const inputs::TileProgress progress({&map}, "Reading");
+  if (hasScene(cli.files)) map.folder()->checkFits();
+  if (cli.options.points.smoothing.neighborWeight > 0) map.folder()->bringAll();
+}
+
+void writeAll(const Cli& cli, semantic_octree::StoredMap& map, Exporter& exporter) {
+  if (map.folder()) prepare(map, cli);
+  for (const fs::path& file : cli.files) {
+    const inputs::TileProgress progress({&map}, "Writing " + file.filename().string());
+    exporter.write(file);
+  }
 }
 
 int run(const Cli& cli) {
   cli.outputs.check(allFiles(cli.files, cli.options));
   const auto map = inputs::openMap(cli.map, cli.memory);
-  if (map->folder()) prepare(*map->folder(), cli);
   ExportOptions options = cli.options;
   options.grid.ground = classesNamed(cli.ground, map->tree().classes());
   Exporter exporter(map->tree(), options);
-  for (const fs::path& file : cli.files) exporter.write(file);
+  writeAll(cli, *map, exporter);
   for (const fs::path& file : exporter.commit()) notes() << file.string() << '\n';
   return 0;
 }
