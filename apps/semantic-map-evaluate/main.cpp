@@ -91,9 +91,9 @@ struct Cli {
         ->required();
     app.add_option("--scans", rawlogs, "Rawlogs of labeled scans that the maps were not made from")
         ->required();
-    app.add_option(
-        "--made-from", madeFrom,
-        "Rawlogs that the maps were made from: adds two rows, for counting their labels alone");
+    app.add_option("--made-from", madeFrom,
+                   "Rawlogs that the maps were made from: adds two rows to compare with, where "
+                   "their labels are only counted");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Leave out points farther from the sensor than this, m")
         ->check(isNumber(strict_files::above(0)));

@@ -8,7 +8,9 @@
 #include <strict_files/OutputFiles.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <list>
@@ -136,9 +138,15 @@ class Exporter {
   template <class Writer>
   void stage(const fs::path& file, const Writer& write) {
     std::ofstream out(staged(file), std::ios::binary);
-    write(out);
-    out.close();
-    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+    errno = 0;
+    try {
+      write(out);
+      out.close();
+    } catch (const std::exception&) {
+      if (out) throw;
+    }
+    if (!out)
+      throw std::runtime_error(file.string() + ": cannot be written: " + std::strerror(errno));
   }
 
   /** A floor at a wrong height makes obstacles of nearly everything: that is said. */

@@ -1,7 +1,6 @@
 // Adds up semantic octree maps, each at its pose.
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/Words.h>
 
@@ -20,7 +19,6 @@ namespace semantic_map_merge {
 namespace {
 
 namespace fs = std::filesystem;
-using semantic_map::CSemanticOctoMap;
 using semantic_octree::Limits;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
@@ -126,7 +124,7 @@ void writeSum(const Cli& cli, std::deque<StoredMap>& stored) {
   }
   SemanticOcTree sum = merged(maps, limits);
   saveTree(sum, cli.out.string());
-  notes() << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
+  notes() << cli.out.string() << ": " << sum.getNumLeafNodes() << " leaves\n";
 }
 
 int run(const Cli& cli) {

@@ -6,7 +6,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iomanip>
 #include <optional>
@@ -248,9 +250,11 @@ void savePicture(const cv::Mat& picture, const std::filesystem::path& file) {
     throw std::runtime_error("cannot encode the picture for '" + file.string() + "'");
   strict_files::StagedFile staged(file);
   std::ofstream out(staged.path(), std::ios::binary);
+  errno = 0;
   out.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
   out.close();
-  if (!out) throw std::runtime_error("cannot write '" + file.string() + "'");
+  if (!out)
+    throw std::runtime_error("cannot write '" + file.string() + "': " + std::strerror(errno));
   staged.commit();
 }
 

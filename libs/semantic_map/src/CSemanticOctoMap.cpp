@@ -101,7 +101,7 @@ std::string CSemanticOctoMap::asString() const {
   const auto lock = reading();
   std::ostringstream text;
   const strict_files::ClassicNumbers classic(text);
-  text << "voxels of " << m_tree.getResolution() << " m, " << m_tree.numClasses()
+  text << "CSemanticOctoMap: voxels of " << m_tree.getResolution() << " m, " << m_tree.numClasses()
        << " classes, " << m_tree.getNumLeafNodes() << " leaves, "
        << strict_files::sizeText(m_tree.memoryUsage());
   return text.str();
