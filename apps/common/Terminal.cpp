@@ -106,6 +106,7 @@ bool StopRequest::pending() const { return stopSignal != 0; }
 namespace {
 
 bool quiet = false, verbose = false;
+std::atomic<bool> barIsDrawn = false;
 
 /** Stands before a stream's own buffer, and passes on what a terminal only shows. */
 class ShownBuffer : public std::streambuf {
@@ -152,7 +153,14 @@ std::ostream& nowhere() {
 
 }  // namespace
 
-std::ostream& notes() { return quiet ? nowhere() : std::cout; }
+std::ostream& notes() {
+  if (quiet) return nowhere();
+  if (barIsDrawn.exchange(false)) {
+    std::cout.flush();
+    std::fputs("\r\033[K", stdout);
+  }
+  return std::cout;
+}
 std::ostream& details() { return verbose && !quiet ? std::cout : nowhere(); }
 void beQuiet() { quiet = true; }
 void beVerbose() { verbose = true; }
@@ -163,12 +171,6 @@ void openStandardStreams() {
       (void)!open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   new ShownBuffer(std::cout);  // never deleted: the streams are flushed after everything else
   new ShownBuffer(std::cerr);
-}
-
-void replaceLine() {
-  if (quiet || !isatty(STDOUT_FILENO)) return;
-  std::cout.flush();
-  std::fputs("\r\033[K", stdout);
 }
 
 bool flushStandardOutput() {
@@ -211,23 +213,17 @@ Progress::Progress(std::string task, std::uint64_t total)
       m_onTerminal(isatty(STDOUT_FILENO)),
       m_said(m_onTerminal ? Clock::time_point() : m_began) {}
 
-Progress::~Progress() {
-  if (m_isDrawn) replaceLine();
-}
+Progress::~Progress() { notes(); }
 
 void Progress::update(std::uint64_t done, const std::string& note) {
   const Clock::time_point now = Clock::now();
   if (seconds(now - m_said) < (m_onTerminal ? kBetweenBars : kBetweenLines)) return;
   m_said = now;
-  if (m_onTerminal) replaceLine();
-  notes() << m_task << ": ";
   const double share =
       m_total == 0 ? 0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(m_total));
-  if (m_total > 0) notes() << shareText(share, m_onTerminal);
-  notes() << note << timeLeft(seconds(now - m_began), share);
-  if (m_onTerminal)
-    notes() << std::flush;
-  else
-    notes() << std::endl;
-  m_isDrawn = m_onTerminal;
+  std::string line = m_task + ": ";
+  if (m_total > 0) line += shareText(share, m_onTerminal);
+  line += note + timeLeft(seconds(now - m_began), share);
+  notes() << line << (m_onTerminal ? "" : "\n") << std::flush;
+  barIsDrawn = m_onTerminal && !quiet;
 }

@@ -47,16 +47,13 @@ class StopRequest {
   bool pending() const;
 };
 
-/** What a program says of its own accord: the standard output, or nothing after beQuiet(). What it
- * was asked for goes to std::cout. */
+/** What a program says of its own accord: the standard output, in place of the bar of Progress, or
+ * nothing after beQuiet(). What it was asked for goes to std::cout. */
 std::ostream& notes();
 /** Details that most do not want to know; says nothing unless beVerbose() was called. */
 std::ostream& details();
 void beQuiet();
 void beVerbose();
-
-/** On a terminal: what notes() says next replaces the line that was begun. */
-void replaceLine();
 
 /** Gives the standard streams that are closed a descriptor that takes nothing: otherwise the first
  * file that is opened would get what is printed. From then on std::cout and std::cerr show control
@@ -85,6 +82,6 @@ class Progress {
 
   std::string m_task;
   std::uint64_t m_total;
-  bool m_onTerminal, m_isDrawn = false;
+  bool m_onTerminal;
   Clock::time_point m_began = Clock::now(), m_said;
 };

@@ -1,6 +1,5 @@
 // The paper's planning experiment: the same random tasks for graphs of the compressed tree and for
 // Halton graphs, with equal numbers of vertices and edges.
-#include <map_folders/MapFolder.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
@@ -12,6 +11,7 @@
 #include <stdexcept>
 
 #include "Application.h"
+#include "inputs/Inputs.h"
 #include "measuring/Measuring.h"
 
 namespace planning_study {
@@ -35,7 +35,7 @@ struct Cli {
   Outputs outputs;
 
   explicit Cli(CLI::App& app) : outputs(app) {
-    app.add_option("MAP", map, "Map (.semantic)")->required();
+    inputs::addMap(app, map);
     app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
     app.add_option("--weights", weights, "What the compressed tree keeps (YAML)")->required();
     app.add_option("--solution", solution,
@@ -172,7 +172,7 @@ std::vector<SemanticPlanner> plannersOf(const Cli& cli, SemanticOcTree& map,
 int run(const Cli& cli) {
   const StopRequest stop("after this instance");
   cli.outputs.check({cli.output});
-  SemanticOcTree map = semantic_octree::loadMap(cli.map);
+  SemanticOcTree map = inputs::loadMap(cli.map);
   const auto order = loadClassOrder(cli.order, map.classes());
   setAbstraction(map, semantic_octree::loadSolution(cli.weights, cli.solution, map.classes()));
   std::vector<SemanticPlanner> planners = plannersOf(cli, map, order);

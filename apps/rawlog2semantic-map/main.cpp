@@ -307,7 +307,10 @@ int run(const Cli& cli) {
     problem = writeMap(map, config, output);
   output.commit(kFiles);
   if (!problem.empty()) throw std::runtime_error(problem);
-  notes() << cli.output.string() << ": " << map.asString() << std::endl;
+  const auto& tree = map.tree();
+  notes() << cli.output.string() << ": voxels of " << tree.getResolution() << " m, "
+          << tree.numClasses() << " classes, " << tree.getNumLeafNodes() << " leaves, "
+          << strict_files::sizeText(tree.memoryUsage()) << " in memory" << std::endl;
   if (live) live->stay();
   return 0;
 }

@@ -37,7 +37,7 @@ struct Cli {
         "of the leaves is kept");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
-    group->add_option("--alpha", target.alpha, "Price of detail (alpha)")
+    group->add_option("--alpha", target.alpha, "Price of a leaf (alpha): a higher one keeps fewer")
         ->check(isNumber(strict_files::atLeast(0)));
     group
         ->add_option_function<std::string>(

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 using semantic_octree::MapFolder;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
+using TileOrder = inputs::TileProgress::Order;
 
 struct Cli {
   fs::path in, out, like, halfLives;
@@ -101,6 +102,8 @@ int run(const Cli& cli) {
   cli.tiles ? cli.outputs.checkFolder(cli.out, {MapFolder::kIndexFile})
             : cli.outputs.check({cli.out});
   const auto stored = load(cli);
+  const inputs::TileProgress progress({stored.get()}, "Editing",
+                                      cli.pose ? TileOrder::Any : TileOrder::DepthFirst);
   std::optional<SemanticOcTree> edited;
   const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored->tree(); };
   if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));

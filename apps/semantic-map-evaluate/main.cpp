@@ -45,6 +45,7 @@ void writeData(std::ostream& out, const NamedEvaluation& map, std::size_t i) {
     if (const auto points = static_cast<double>(bin.points); points > kLeast * all)
       out << 100 * bin.meanStated() << ' ' << 100 * bin.shareRight() << ' ' << 100 * points / all
           << '\n';
+  if (all == 0) out << "-1 -1 -1\n";  // outside of the axes: gnuplot complains of no points
   out << "EOD\n";
 }
 
@@ -90,9 +91,9 @@ struct Cli {
         ->required();
     app.add_option("--scans", rawlogs, "Rawlogs of labeled scans that the maps were not made from")
         ->required();
-    app.add_option(
-        "--made-from", madeFrom,
-        "Rawlogs that the maps were made from: adds two rows, for counting their labels alone");
+    app.add_option("--made-from", madeFrom,
+                   "Rawlogs that the maps were made from: adds two rows to compare with, where "
+                   "their labels are only counted");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Leave out points farther from the sensor than this, m")
         ->check(isNumber(strict_files::above(0)));
@@ -199,22 +200,34 @@ std::string pointsText(std::size_t points) {
   return text.str();
 }
 
+/** "97.5"; of no points: "-" */
+std::string numberText(double number, int decimals) {
+  if (std::isnan(number)) return "-";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(decimals) << number;
+  return text.str();
+}
+
 /** A sentence on the first map, and a line for each. */
 std::string tableOf(const std::vector<NamedEvaluation>& results) {
   std::size_t width = 0;
   for (const NamedEvaluation& result : results) width = std::max(width, result.name.size());
   const Evaluation& first = results.front().evaluation;
   std::ostringstream text;
-  text << std::fixed << std::setprecision(1) << results.front().name << ": "
-       << 100 * first.coverage() << " % of " << pointsText(first.points())
-       << " lie in occupied voxels; " << 100 * first.accuracy()
-       << " % of these that name a class have the right class\n"
+  text << results.front().name << ": " << numberText(100 * first.coverage(), 1) << " % of "
+       << pointsText(first.points()) << " lie in occupied voxels";
+  if (first.answered() > 0)
+    text << "; " << numberText(100 * first.accuracy(), 1)
+         << " % of these that name a class have the right class";
+  text << '\n'
        << std::string(width, ' ') << "  occupied  right  stated  recall  log loss  calibration\n";
   for (const auto& [name, e] : results)
-    text << std::setprecision(1) << name << std::string(width - name.size(), ' ') << std::setw(8)
-         << 100 * e.coverage() << " %" << std::setw(7) << 100 * e.accuracy() << std::setw(8)
-         << 100 * e.meanStated() << std::setw(8) << 100 * e.meanRecall() << std::setprecision(3)
-         << std::setw(10) << e.logLoss() << std::setw(13) << e.calibrationError() << '\n';
+    text << name << std::string(width - name.size(), ' ') << std::setw(8)
+         << numberText(100 * e.coverage(), 1) << " %" << std::setw(7)
+         << numberText(100 * e.accuracy(), 1) << std::setw(8) << numberText(100 * e.meanStated(), 1)
+         << std::setw(8) << numberText(100 * e.meanRecall(), 1) << std::setw(10)
+         << numberText(e.logLoss(), 3) << std::setw(13) << numberText(e.calibrationError(), 3)
+         << '\n';
   return text.str();
 }
 

@@ -8,7 +8,9 @@
 #include <strict_files/OutputFiles.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <list>
@@ -136,9 +138,15 @@ class Exporter {
   template <class Writer>
   void stage(const fs::path& file, const Writer& write) {
     std::ofstream out(staged(file), std::ios::binary);
-    write(out);
-    out.close();
-    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+    errno = 0;
+    try {
+      write(out);
+      out.close();
+    } catch (const std::exception&) {
+      if (out) throw;
+    }
+    if (!out)
+      throw std::runtime_error(file.string() + ": cannot be written: " + std::strerror(errno));
   }
 
   /** A floor at a wrong height makes obstacles of nearly everything: that is said. */
@@ -300,19 +308,27 @@ bool hasScene(const std::vector<fs::path>& files) {
 
 /** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone
  * through. */
-void prepare(semantic_octree::MapFolder& folder, const Cli& cli) {
-  if (hasScene(cli.files)) folder.checkFits();
-  if (cli.options.points.smoothing.neighborWeight > 0) folder.bringAll();
+void prepare(semantic_octree::StoredMap& map, const Cli& cli) {
+  const inputs::TileProgress progress({&map}, "Reading");
+  if (hasScene(cli.files)) map.folder()->checkFits();
+  if (cli.options.points.smoothing.neighborWeight > 0) map.folder()->bringAll();
+}
+
+void writeAll(const Cli& cli, semantic_octree::StoredMap& map, Exporter& exporter) {
+  if (map.folder()) prepare(map, cli);
+  for (const fs::path& file : cli.files) {
+    const inputs::TileProgress progress({&map}, "Writing " + file.filename().string());
+    exporter.write(file);
+  }
 }
 
 int run(const Cli& cli) {
   cli.outputs.check(allFiles(cli.files, cli.options));
   const auto map = inputs::openMap(cli.map, cli.memory);
-  if (map->folder()) prepare(*map->folder(), cli);
   ExportOptions options = cli.options;
   options.grid.ground = classesNamed(cli.ground, map->tree().classes());
   Exporter exporter(map->tree(), options);
-  for (const fs::path& file : cli.files) exporter.write(file);
+  writeAll(cli, *map, exporter);
   for (const fs::path& file : exporter.commit()) notes() << file.string() << '\n';
   return 0;
 }

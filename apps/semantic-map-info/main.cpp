@@ -233,8 +233,12 @@ int run(const Cli& cli) {
     std::cout << (cli.json ? textOf(answers) : textOfAnswers(answers));
     return 0;
   }
-  if (map->folder()) checkTiles(*map->folder());
-  const auto description = describe(*map, cli.map);
+  const auto description = [&] {
+    std::optional<inputs::TileProgress> progress;
+    if (!cli.json) progress.emplace(std::vector{map.get()}, "Reading");
+    if (map->folder()) checkTiles(*map->folder());
+    return describe(*map, cli.map);
+  }();
   if (cli.json)
     std::cout << textOf(description);
   else

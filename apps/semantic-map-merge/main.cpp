@@ -1,7 +1,6 @@
 // Adds up semantic octree maps, each at its pose.
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
-#include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/Words.h>
 
@@ -20,7 +19,6 @@ namespace semantic_map_merge {
 namespace {
 
 namespace fs = std::filesystem;
-using semantic_map::CSemanticOctoMap;
 using semantic_octree::Limits;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
@@ -64,13 +62,16 @@ void load(const Cli& cli, const fs::path& file, const std::map<fs::path, Eigen::
           std::deque<StoredMap>& maps) {
   const auto pose = poses.find(file);
   const double memory = cli.memoryOfMap();
-  if (pose != poses.end()) {
-    SemanticOcTree map = moved(inputs::openMap(file, memory)->tree(), pose->second);
-    maps.emplace_back(cli.box ? inBox(map, *cli.box) : std::move(map));
-  } else if (cli.box) {
-    maps.emplace_back(inBox(inputs::openMap(file, memory)->tree(), *cli.box));
-  } else {
+  if (pose == poses.end() && !cli.box) {
     inputs::appendMap(maps, file, memory);
+  } else {
+    const auto stored = inputs::openMap(file, memory);
+    const inputs::TileProgress progress({stored.get()}, "Reading " + file.filename().string(),
+                                        inputs::TileProgress::Order::Any);
+    std::optional<SemanticOcTree> map;
+    if (pose != poses.end()) map = moved(stored->tree(), pose->second);
+    if (cli.box) map = inBox(map ? *map : stored->tree(), *cli.box);
+    maps.emplace_back(*std::move(map));
   }
   notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";
 }
@@ -104,7 +105,14 @@ void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& 
 }
 
 /** Into memory and a file, or into a folder. */
-void writeSum(const Cli& cli, const std::vector<const SemanticOcTree*>& maps) {
+void writeSum(const Cli& cli, std::deque<StoredMap>& stored) {
+  std::vector<StoredMap*> parts;
+  std::vector<const SemanticOcTree*> maps;
+  for (StoredMap& map : stored) {
+    parts.push_back(&map);
+    maps.push_back(&map.tree());
+  }
+  const inputs::TileProgress progress(parts, "Adding up");
   const Limits limits = cli.partial ? Limits::Keep : Limits::Apply;
   if (cli.tiles) {
     StoredMap sum(emptyLike(*maps.front()), cli.out, {cli.memoryOfMap(), *cli.tiles});
@@ -116,7 +124,7 @@ void writeSum(const Cli& cli, const std::vector<const SemanticOcTree*>& maps) {
   }
   SemanticOcTree sum = merged(maps, limits);
   saveTree(sum, cli.out.string());
-  notes() << cli.out.string() << ": " << CSemanticOctoMap(std::move(sum)).asString() << '\n';
+  notes() << cli.out.string() << ": " << sum.getNumLeafNodes() << " leaves\n";
 }
 
 int run(const Cli& cli) {
@@ -125,13 +133,11 @@ int run(const Cli& cli) {
   std::map<fs::path, Eigen::Isometry3d> poses;
   if (!cli.poses.empty()) poses = readMapPoses(cli.poses, cli.maps);
   std::deque<StoredMap> maps;
-  std::vector<const SemanticOcTree*> pointers;
   for (const fs::path& file : cli.maps) {
     load(cli, file, poses, maps);
     checkAlike(cli.maps.front(), maps.front().tree(), file, maps.back().tree());
-    pointers.push_back(&maps.back().tree());
   }
-  writeSum(cli, pointers);
+  writeSum(cli, maps);
   return 0;
 }
 

@@ -31,6 +31,7 @@ namespace semantic_map_plan {
 namespace {
 
 using namespace semantic_planning;
+using inputs::TileProgress;
 using map_pictures::MapCanvas;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
@@ -132,7 +133,10 @@ int run(Cli& cli) {
   const auto order = loadClassOrder(cli.order, stored->tree().classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;
+  std::optional<TileProgress> progress(std::in_place, std::vector{stored.get()},
+                                       "Looking for a corridor", TileProgress::Order::Any);
   const auto corridor = corridorOf(cli, *stored, order);
+  progress.reset();
   if (corridor && stored->folder()) {
     stored.reset();  // first, so that what it has in memory can be taken again
     stored = mapOf(cli, *corridor);
@@ -140,18 +144,25 @@ int run(Cli& cli) {
   SemanticOcTree& map = stored->tree();
   const double searchingCorridor = watch.lap();
   // Now, for what that takes is free again before the ground needs it.
+  progress.emplace(std::vector{stored.get()}, "Drawing the map");
   MapCanvas canvas = MapCanvas::ofMap(map, {});
   watch.lap();
   const bool mayHaveGraph = !cli.planner.shorten || cli.planner.strict;
   const bool hasGraph = mayHaveGraph && isOfTree(cli.planner.roadmap.kind);
+  progress.emplace(std::vector{stored.get()}, "Compressing");
   if (hasGraph || !cli.weights.empty())
     setAbstraction(map, cli.weights.empty() ? abstractionFor(order)
                                             : semantic_octree::loadSolution(
                                                   cli.weights, cli.solution, map.classes()));
   const double abstraction = watch.lap();
+  progress.emplace(std::vector{stored.get()}, "Finding the ground", TileProgress::Order::Any);
   SemanticPlanner planner(map, order, cli.planner, corridor);
   const double ground = watch.lap();
+  progress.reset();
+  std::optional<Progress> planning(std::in_place, "Planning", 0);
+  planning->update(0, "a path");
   const PlanResult plan = planner.plan(cli.start, cli.goal, cli.startZ, cli.goalZ);
+  planning.reset();
   nlohmann::json report = toJson(plan, order, map.classes());
   report["milliseconds"]["corridor"] = searchingCorridor;
   report["milliseconds"]["abstraction"] = abstraction;

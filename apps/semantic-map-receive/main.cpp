@@ -165,7 +165,8 @@ struct Cli {
         ->type_name("NAME");
     app.add_option("--alpha", wish.alpha, "The price of detail, instead of the weights' own")
         ->check(isNumber(strict_files::atLeast(0)));
-    app.add_option("--bytes", reception.bytes, "End when this many bytes came without a gap")
+    app.add_option("--bytes", reception.bytes,
+                   "End when the first so many bytes of the map are there, without a gap")
         ->check(isNumber(strict_files::above(0)));
     app.add_option("--like", like, "Refuse a map whose classes or voxels differ from this map's");
     app.add_option(

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <tuple>
 
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
@@ -138,6 +139,37 @@ TEST_F(MapFolders, arePlannedOnInACorridorAsMapsInOnePiece) {
   for (const char* file : {"path.csv", "roadmap.graph"})
     EXPECT_EQ(folder->read(std::string("way-tiles/") + file),
               folder->read(std::string("way-plain/") + file));
+}
+
+TEST_F(MapFolders, areGoneThroughWithABarOnATerminal) {
+  if (runCommand("command -v script").status != 0) GTEST_SKIP() << "needs bsdutils";
+  const auto shown = [](const std::string& command) {
+    return runCommand("script -qec '" MSO_BIN_DIR "/" + command + " --memory 0.1' /dev/null")
+        .output;
+  };
+  const std::string tiles = path("tiles"), sum = path("bar-sum"), edited = path("bar.semantic"),
+                    ply = path("bar.ply"), plan = path("bar-plan");
+  const std::string drive = " --start=-14,-19,10 --goal=25,-12,90 --order " + kSources +
+                            "/config/orders/synthetic.yaml -o ";
+  const std::string kGone = "\r\033[K";
+  for (const auto& [command, bars, end] : std::vector<std::tuple<std::string, Words, std::string>>{
+           {"semantic-map-merge " + tiles + " -o " + sum + " --tiles 12.8", {"Adding up: ["}, sum},
+           {"semantic-map-edit " + tiles + " -o " + edited, {"Editing: ["}, edited},
+           {"semantic-map-edit -f --pose 1,2,0,30,0,0 " + tiles + " -o " + edited,
+            {"Editing: 1 tiles"},
+            edited},
+           {"semantic-map-export " + tiles + " -o " + ply, {"Writing bar.ply: ["}, ply},
+           {"semantic-map-info " + tiles, {"Reading: ["}, tiles},
+           {"semantic-map-plan " + tiles + drive + plan,
+            {"Looking for a corridor: 1 tiles", "Drawing the map: [", "Finding the ground: 1 tiles",
+             "Planning: a path"},
+            "Path of "}}) {
+    const std::string text = shown(command);
+    for (const std::string& bar : bars) EXPECT_TRUE(contains(text, bar)) << bar << '\n' << text;
+    EXPECT_TRUE(contains(text, kGone + end)) << text;
+  }
+  EXPECT_FALSE(
+      contains(runCommand(MSO_BIN_DIR "/semantic-map-info --json " + tiles).output, "Read"));
 }
 
 TEST_F(MapFolders, areCompressedToTheSameTrees) {

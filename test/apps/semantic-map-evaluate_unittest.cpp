@@ -175,6 +175,10 @@ TEST_F(SemanticMapEvaluate, callsMapsOfOneNameByTheirPathsAndDoubtsThoseOfOtherP
   EXPECT_EQ(both[file("map")]["coverage"], 1);
   EXPECT_TRUE(contains(run.output, file("other/map") + ": only 0 % of the points are in the map"));
   EXPECT_FALSE(contains(run.output, file("map") + ": only"));
+  const ProgramRun nothing =
+      succeeded(evaluate({file("other/map.semantic"), "--scans", file("scans.rawlog"), "-f"}));
+  EXPECT_TRUE(contains(nothing.output, "map: 0.0 % of 2 points lie in occupied voxels\n"));
+  for (const char* unwanted : {"nan", "arning"}) EXPECT_FALSE(contains(nothing.output, unwanted));
 }
 
 TEST_F(SemanticMapEvaluate, namesAreNoCommandsForGnuplot) {

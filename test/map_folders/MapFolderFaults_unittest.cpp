@@ -275,6 +275,8 @@ TEST_F(FolderIndex, withWhatItsKeysMayNotBeIsRefused) {
       {replaced(good, "tile_size: 6.4", "tile_size: 6.5"), "tile_size"},
       {replaced(good, "\nold:\n", "\nold:\n  - ../other.1.semantic\n"), "old: expected names"},
       {replaced(good, "\nold:\n", "\nold:\n  - leaves.2.semantic\n"), "old: expected names"},
+      {replaced(good, "\nold:\n", "\nold:\n  - leaves." + std::string(300000, '1') + ".semantic\n"),
+       "old: expected names"},
       {replaced(good, "\nversion: 2\n", "\nversion: 3\n"), "version of the format"}};
   for (const auto& [index, message] : faults)
     EXPECT_TRUE(contains(refusalOf(checked(index)), message))

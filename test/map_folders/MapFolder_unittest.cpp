@@ -6,6 +6,7 @@
 #include <semantic_octree/store/MapAccess.h>
 
 #include <functional>
+#include <numeric>
 
 #include "FolderDrive.h"
 #include "Voxels.h"
@@ -84,6 +85,28 @@ TEST(MapFolder, isTheMapInOnePieceToTheLastBit) {
     EXPECT_EQ(loadMap(folder / "map").size(), whole.size());
     EXPECT_EQ(loadMap(folder / "map").memoryUsage(), whole.memoryUsage());
   }
+}
+
+TEST(MapFolder, tellsOfEachTileInTheOrderInWhichReadersNeedThem) {
+  const TemporaryFolder folder;
+  saveScans(folder / "map", someScans(2, 6));
+  SemanticOcTree map = emptyMap();
+  MapFolder tiles(map, folder / "map", kRead, tight());
+  std::vector<std::size_t> told, expected(tiles.contents().tiles);
+  std::iota(expected.begin(), expected.end(), std::size_t{0});
+  tiles.onTile([&told](std::size_t number) { told.push_back(number); });
+  contentsOf(map);
+  EXPECT_GT(told.size(), 10u);
+  EXPECT_EQ(told, expected);
+  tiles.onTile({});
+  tiles.problems();
+  EXPECT_EQ(told, expected);
+  SemanticOcTree all = emptyMap();
+  MapFolder inMemory(all, folder / "map", kRead, tight());
+  told.clear();
+  inMemory.onTile([&told](std::size_t number) { told.push_back(number); });
+  inMemory.bringAll();
+  EXPECT_EQ(told, expected);
 }
 
 TEST(MapFolder, staysWithinItsBudgetButForAScan) {

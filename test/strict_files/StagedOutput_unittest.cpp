@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "FullDisk.h"
@@ -179,7 +181,7 @@ TEST_F(StagedFiles, ofAFullDiskIsNotThere) {
     const FullDisk full(10);
     strict_files::writeText(folder / "a", "more than ten bytes");
   });
-  EXPECT_EQ(error, path("a") + ": cannot be written");
+  EXPECT_EQ(error, path("a") + ": cannot be written: File too large");
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
@@ -221,6 +223,20 @@ TEST_F(ManyOutputs, areGoneWhenAProcessLeavesWithoutThem) {
             5);
   EXPECT_EQ(entriesOf(folder.path()), 1u);
   EXPECT_EQ(folder.read("a"), "before");
+}
+
+TEST_F(OutputFolders, goWhereNoMoreFilesCanBeOpened) {
+  std::optional<OutputFolder> output(std::in_place, folder / "out");
+  write(output->staged("a"), "text");
+  const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  close(next);
+  rlimit before = {};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none = {static_cast<rlim_t>(next), before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+  output.reset();
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 TEST_F(OutputFolders, filesAreOnTheDiskBeforeAnyTakesItsPlace) {

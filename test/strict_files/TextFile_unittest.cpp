@@ -171,6 +171,9 @@ TEST(Words, controlCharactersAreShownByTheirBytes) {
   EXPECT_EQ(printable("road\n!touch x\n"), "road\\x0a!touch x\\x0a");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
   EXPECT_EQ(printable("\t\x1b[2J\x7f"), "\\x09\\x1b[2J\\x7f");
+  EXPECT_EQ(printable("\u202eroad\u2066\u2028x"),
+            "\\xe2\\x80\\xaeroad\\xe2\\x81\\xa6\\xe2\\x80\\xa8x")
+      << "what follows would be read from right to left, or in another line";
   EXPECT_EQ(printable("\xC2\x9B"
                       "1m"),
             "\\xc2\\x9b1m");  // CSI, of C1

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <numeric>
 
 namespace inputs {
 
@@ -101,6 +102,34 @@ std::unique_ptr<StoredMap> openMap(const fs::path& path, double memory,
 SemanticOcTree loadMap(const fs::path& path) {
   if (auto octomap = octomapIn(path)) return std::move(*octomap);
   return semantic_octree::loadMap(path);
+}
+
+TileProgress::TileProgress(const std::vector<StoredMap*>& maps, std::string task, Order order)
+    : m_task(std::move(task)), m_order(order), m_done(maps.size()) {
+  for (StoredMap* map : maps) {
+    MapFolder* const folder = map->folder();
+    if (!folder) continue;
+    std::size_t& done = m_done[m_folders.size()];
+    folder->onTile([this, &done](std::size_t number) { tell(done, number); });
+    m_folders.push_back(folder);
+    m_total += folder->contents().tiles;
+  }
+}
+
+TileProgress::~TileProgress() {
+  for (MapFolder* folder : m_folders) folder->onTile({});
+}
+
+/** Who goes through the maps once more begins anew: how long that takes is another matter. */
+void TileProgress::tell(std::size_t& tilesOfFolder, std::size_t number) {
+  const bool inOrder = m_order == Order::DepthFirst;
+  const bool isAnew = inOrder && number < tilesOfFolder;
+  if (!m_progress || isAnew) m_progress.emplace(m_task, inOrder ? m_total : 0);
+  if (isAnew) m_done.assign(m_done.size(), 0);
+  tilesOfFolder = inOrder ? number + 1 : tilesOfFolder + 1;
+  const std::size_t done = std::accumulate(m_done.begin(), m_done.end(), std::size_t{0});
+  m_progress->update(
+      done, std::to_string(done) + (inOrder ? " of " + std::to_string(m_total) : "") + " tiles");
 }
 
 void checkRawlogs(const std::vector<fs::path>& files) {

@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "Terminal.h"
 
 namespace inputs {
 
@@ -37,6 +40,32 @@ void appendMap(Maps& maps, const std::filesystem::path& path, double memory) {
 }
 /** All of a map. \throw std::runtime_error as openMap() */
 semantic_octree::SemanticOcTree loadMap(const std::filesystem::path& path);
+
+/** While it lives, it says how far what goes through folders of tiles is. Maps of single files are
+ * not counted. */
+class TileProgress {
+ public:
+  enum class Order {
+    DepthFirst,
+    Any  ///< which tiles come, and how often, nobody knows
+  };
+  /** \param maps gone through together \param task "Exporting" */
+  TileProgress(const std::vector<semantic_octree::StoredMap*>& maps, std::string task,
+               Order order = Order::DepthFirst);
+  ~TileProgress();
+  TileProgress(const TileProgress&) = delete;
+  TileProgress& operator=(const TileProgress&) = delete;
+
+ private:
+  void tell(std::size_t& tilesOfFolder, std::size_t number);
+
+  std::string m_task;
+  Order m_order;
+  std::vector<semantic_octree::MapFolder*> m_folders;
+  std::vector<std::size_t> m_done;  ///< tiles of each folder
+  std::size_t m_total = 0;
+  std::optional<Progress> m_progress;
+};
 
 /** \throw std::runtime_error naming the first that is a folder or a file of another kind, what it
  * is, and which command makes a rawlog of it. */

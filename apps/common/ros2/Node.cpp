@@ -131,7 +131,8 @@ std::string Node::expanded(const std::string& name) const {
   else if (name.rfind("/", 0) != 0)
     full = m_namespace + "/" + name;
   static const std::regex kName("(/[A-Za-z_][A-Za-z0-9_]*)+");
-  if (!std::regex_match(full, kName))
+  constexpr std::size_t kLongest = 255;  // of DDS; std::regex goes as deep as they are long
+  if (full.size() > kLongest || !std::regex_match(full, kName))
     throw std::runtime_error("'" + full + "' is no name of a topic");
   return full;
 }

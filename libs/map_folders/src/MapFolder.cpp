@@ -272,6 +272,8 @@ void MapFolder::bringAll(std::optional<std::size_t> available) {
   m->tiles->bringAll();
 }
 
+void MapFolder::onTile(std::function<void(std::size_t)> told) { m->tiles->onTile(std::move(told)); }
+
 std::vector<std::string> MapFolder::problems() { return m->tiles->problems(); }
 
 MapFolder::Contents MapFolder::contents() const {

@@ -159,6 +159,8 @@ std::string TileIndex::leavesName(std::uint64_t ofGeneration) {
 }
 
 std::optional<std::uint64_t> TileIndex::generationOf(const std::string& name) {
+  constexpr std::size_t kLongest = 255;  // names of files; std::regex goes as deep as they are long
+  if (name.size() > kLongest) return {};
   static const std::regex pattern("(tile_-?\\d+_-?\\d+_-?\\d+|leaves)\\.(\\d+)\\.semantic");
   std::smatch match;
   if (!std::regex_match(name, match, pattern)) return {};

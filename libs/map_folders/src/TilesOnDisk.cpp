@@ -136,6 +136,9 @@ void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
   tile.isAway = false;
   tile.halfLives.reset();
   ++m_broughtIn;
+  if (!m_told) return;
+  const auto place = std::lower_bound(m_order.begin(), m_order.end(), tileCode(tile.place));
+  m_told(static_cast<std::size_t>(place - m_order.begin()));
 }
 
 void TilesOnDisk::read(Slot& slot, const Tile& tile) {
@@ -291,17 +294,28 @@ void TilesOnDisk::checkFits(std::optional<std::size_t> most) const {
                              strict_files::sizeText(available) + " are left");
 }
 
+std::vector<std::uint64_t> TilesOnDisk::sortedCodes() const {
+  std::vector<std::uint64_t> codes;
+  for (const Entry& entry : m_tiles) codes.push_back(entry.first);
+  std::sort(codes.begin(), codes.end());
+  return codes;
+}
+
+void TilesOnDisk::onTile(std::function<void(std::size_t)> told) {
+  m_told = std::move(told);
+  m_order = sortedCodes();
+}
+
 void TilesOnDisk::bringAll() {
-  for (Entry& entry : m_tiles)
-    if (entry.second.isAway) fetch(*slotOf(entry.second), entry.second);
+  for (const std::uint64_t code : sortedCodes()) {
+    Tile& tile = m_tiles.at(code);
+    if (tile.isAway) fetch(*slotOf(tile), tile);
+  }
 }
 
 std::vector<std::string> TilesOnDisk::problems() {
   std::vector<std::string> problems;
-  std::vector<std::uint64_t> codes;
-  for (const Entry& entry : m_tiles) codes.push_back(entry.first);
-  std::sort(codes.begin(), codes.end());
-  for (const std::uint64_t code : codes) {
+  for (const std::uint64_t code : sortedCodes()) {
     const auto tile = m_tiles.find(code);
     if (tile == m_tiles.end() || !tile->second.isAway) continue;
     try {

@@ -44,6 +44,7 @@ class TilesOnDisk : public TileSource {
     m_index = std::move(index);
     m_place.next = m_index.generation + 1;
   }
+  void onTile(std::function<void(std::size_t)> told);
   std::vector<std::string> problems();
   void addTo(MapFolder::Contents& contents) const;
 
@@ -64,6 +65,8 @@ class TilesOnDisk : public TileSource {
   Cube cellOf(const Tile& tile) const { return cubeAt(tile.place, m_place.depth); }
   /** Where it is, or is to be written. */
   std::string fileOf(const Tile& tile) const;
+  /** Morton codes of the tiles, which is the order of whatever goes depth first. */
+  std::vector<std::uint64_t> sortedCodes() const;
   NodeArena& arenaWith(bool most);
   /** Null: it is no inner node (any more). */
   Slot* slotOf(const Tile& tile) const;
@@ -82,6 +85,8 @@ class TilesOnDisk : public TileSource {
   std::unordered_map<std::uint64_t, Tile> m_tiles;  ///< by Morton code
   std::uint64_t m_clock = 0;
   std::size_t m_broughtIn = 0, m_sentOut = 0;
+  std::function<void(std::size_t)> m_told;
+  std::vector<std::uint64_t> m_order;  ///< of those there were when onTile() was called
 };
 
 }  // namespace semantic_octree

@@ -1,6 +1,7 @@
 #include <map_operations/MapOperations.h>
 
 #include <semantic_octree/store/TreeBuilder.h>
+#include <strict_files/OptionList.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -116,6 +117,15 @@ class CoarseCursor {
 
 }  // namespace
 
+namespace {
+
+std::string pointText(const Eigen::Vector3d& p) {
+  using strict_files::textOf;
+  return textOf(p.x()) + "," + textOf(p.y()) + "," + textOf(p.z());
+}
+
+}  // namespace
+
 void copyTo(SemanticOcTree& copy, const SemanticOcTree& map) {
   TreeBuilder::checkTarget(copy, map);
   const VoxelBox all;
@@ -125,7 +135,8 @@ void copyTo(SemanticOcTree& copy, const SemanticOcTree& map) {
 
 SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box) {
   if (!(box.min().array() <= box.max().array()).all())
-    throw std::invalid_argument("cropping: the box is empty, or not a number");
+    throw std::invalid_argument("cropping: the box from " + pointText(box.min()) + " to " +
+                                pointText(box.max()) + " m is empty, or not a number");
   SemanticOcTree part = emptyLike(map);
   const VoxelBox voxels = voxelsIn(box, map.getResolution());
   TreeBuilder::fill(part, CropCursor(map.numClasses(), voxels, map.root(), Cube()));

@@ -72,10 +72,10 @@ double add(const SemanticOcTree::Belief& belief, double weight, double most,
 }  // namespace
 
 void SmoothingOptions::describe(strict_files::OptionList& list) {
-  list.add(
-      "neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
-      "weight of each neighbor across a face in a voxel's class, which itself has 1; a neighbor "
-      "tells odds of 25 at most. 1 sees through 30 % of wrong labels, less keeps smaller things");
+  list.add("neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
+           "weight of each of the six neighbors in a voxel's class; its own is 1. A neighbor "
+           "counts with "
+           "odds of 25 at most. 1 outvotes 30 % of wrong labels, less keeps smaller things");
 }
 
 void SmoothingOptions::validate() const { strict_files::checkOptions(*this, "SmoothingOptions"); }

@@ -97,8 +97,8 @@ Unfinished::Unfinished(const fs::path& folder, Kind kind, const std::string& end
 Unfinished::~Unfinished() {
   const auto held = hold();
   registry().all.erase(this);
+  close(m_descriptor);  // first: to remove a folder takes a descriptor, and this may be the last
   discard();
-  close(m_descriptor);
 }
 
 fs::path Unfinished::keep() {

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -61,7 +63,8 @@ std::size_t continuationOf(unsigned char first) {
   return first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
 }
 
-/** Bytes of the letter in UTF-8 that begins there; 0 if there is none, or a control character. */
+/** Bytes of the letter in UTF-8 that begins there; 0 if there is none, a control character, or one
+ * that ends a line or turns what follows around. */
 std::size_t printableBytes(const std::string& text, std::size_t begin) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[begin + i]); };
   const std::size_t more = continuationOf(at(0));
@@ -72,8 +75,12 @@ std::size_t printableBytes(const std::string& text, std::size_t begin) {
     letter = letter << 6 | (at(k) & 0x3f);
   }
   static const char32_t least[] = {0x20, 0xa0, 0x800, 0x10000};  // without C0 and C1
-  const bool isLetter = letter >= least[more] && letter != 0x7f && letter <= 0x10ffff &&
-                        !(letter >= 0xd800 && letter < 0xe000);
+  const auto isBetween = [letter](char32_t low, char32_t high) {
+    return letter >= low && letter <= high;
+  };
+  const bool turnsText = isBetween(0x2028, 0x202e) || isBetween(0x2066, 0x2069);
+  const bool isLetter = isBetween(least[more], 0x10ffff) && letter != 0x7f &&
+                        !isBetween(0xd800, 0xdfff) && !turnsText;
   return isLetter ? 1 + more : 0;
 }
 
@@ -142,9 +149,11 @@ std::string readText(const std::filesystem::path& file) {
 void writeText(const std::filesystem::path& file, const std::string& text) {
   StagedFile staged(file);
   std::ofstream stream(staged.path(), std::ios::binary);
+  errno = 0;
   stream << text;
   stream.close();
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
+  if (!stream)
+    throw std::runtime_error(file.string() + ": cannot be written: " + std::strerror(errno));
   staged.commit();
 }
 

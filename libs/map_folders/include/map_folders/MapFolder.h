@@ -105,6 +105,11 @@ class MapFolder {
    * \throw std::runtime_error as checkFits(), before it begins */
   void bringAll(std::optional<std::size_t> available = {});
 
+  /** Calls this each time that a tile has come in, until it is given another or none. Tiles are
+   * counted from 0 in the order in which whatever goes depth first needs them; others need not
+   * come. */
+  void onTile(std::function<void(std::size_t number)> told);
+
   /** What is wrong with tiles, each naming its file: missing, cut, altered. Reads all of them. */
   std::vector<std::string> problems();
 

@@ -15,8 +15,9 @@ void PlannerOptions::describe(strict_files::OptionList& list) {
       "reading", reading.kind, "",
       "class of a voxel: the likeliest, each by its probability, or the worst that is probable");
   list.add("shorten", shorten, "",
-           "look for the path of least price; off: take the graph's best path");
-  list.add("strict", strict, "", "classes before length, as if all rates of the order were inf");
+           "look for the path of least price; without: take the graph's best path");
+  list.add("strict", strict, "",
+           "no way through a worse class is taken to save length (all rates in the order are inf)");
   ground.describe(list);
 }
 
