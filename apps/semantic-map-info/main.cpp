@@ -33,7 +33,10 @@ ordered_json parametersJson(const FilterParameters& p) {
           {"minOccupancy", p.minOccupancy},
           {"maxProbability", p.maxProbability},
           {"softLabelFloor", p.softLabelFloor},
-          {"calibration", {{"power", p.calibration.power}, {"shared", p.calibration.shared}}}};
+          {"calibration",
+           {{"power", p.calibration.power},
+            {"shared", p.calibration.shared},
+            {"factors", p.calibration.factors}}}};
 }
 
 void addHalfLife(const SemanticOcTree& map, ClassId id, ordered_json& description) {
@@ -154,7 +157,11 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
   out << std::setprecision(3)
       << "\n  calibration   the filter's class probabilities to the power of "
       << calibration["power"].get<double>() << "; " << 100 * calibration["shared"].get<double>()
-      << " % go evenly to the classes named in the voxel" << std::setprecision(6);
+      << " % go evenly to the classes named in the voxel";
+  if (const auto& factors = calibration["factors"]; !factors.empty())
+    out << "; times factors of " << std::min_element(factors.begin(), factors.end())->get<double>()
+        << " to " << std::max_element(factors.begin(), factors.end())->get<double>() << " by class";
+  out << std::setprecision(6);
   if (d.contains("folder")) printFolder(d["folder"], out);
   if (d.contains("clock")) printTime(d, out);
   out << "\n  occupied voxels by likeliest class (the table has " << d["classes"].size() << ")\n";

@@ -123,9 +123,13 @@ void receivePackets(const std::string& bytes) {
     const std::string text = description.compressed();
     const bool isFirst = at == records.begin();
     try {
-      copy.accept(semantic_octree::TreeMessage{kStream, header.revision + 1u, isFirst,
-                                               isFirst ? text : "", 1, contents}
-                      .bytes());
+      semantic_octree::TreeMessage message;
+      message.stream = kStream;
+      message.number = header.revision + 1u;
+      message.isAll = isFirst;
+      if (isFirst) message.description = text;
+      message.parts = contents;
+      copy.accept(message.bytes());
       expectSound(copy.map());
     } catch (const std::exception&) {
     }

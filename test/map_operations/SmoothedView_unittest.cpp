@@ -52,6 +52,7 @@ struct Told {
 
 Told toldAt(const SemanticOcTree& map, const VoxelId& id, double weight) {
   Told told{beliefAt(map, id), std::vector<double>(kViewClasses + 1, 0.0)};
+  const double most = map.filterParameters().calibration.factors.empty() ? 3.2 : 2.2;
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y)
       for (int z = -1; z <= 1; ++z) {
@@ -63,7 +64,7 @@ Told toldAt(const SemanticOcTree& map, const VoxelId& id, double weight) {
           h.push_back(belief->logOddsOf(static_cast<ClassId>(k)));
         const auto [low, high] = std::minmax_element(h.begin(), h.end());
         const double share = axes == 0 ? 1 : weight / (axes == 1 ? 1 : axes == 2 ? 2 : 4);
-        const double range = *high - *low, counted = axes == 0 ? range : std::min(range, 3.2);
+        const double range = *high - *low, counted = axes == 0 ? range : std::min(range, most);
         for (std::size_t k = 0; k < h.size(); ++k)
           told.sum[k + 1] += share * std::max(h[k] - *high, -counted);
         told.weights += range > 0 ? share * counted / range : share;
@@ -77,14 +78,19 @@ std::optional<std::vector<double>> expectedClasses(const SemanticOcTree& map, do
                                                    const Told& told) {
   auto [own, sum, weights] = told;
   if (weights == 0) return std::nullopt;
-  for (double& x : sum) x /= 1 + repeated * (std::max(1.0, weights) - 1);
+  weights = std::max(1.0, weights);
+  const double divisor = 1 + repeated * (weights - 1);
+  for (double& x : sum) x /= divisor;
   const FilterParameters& f = map.filterParameters();
   const double lowest = *std::max_element(sum.begin() + 1, sum.end()) +
                         std::log(f.minOccupancy / (1 - f.minOccupancy) / kViewClasses) -
                         std::log(f.maxProbability / (1 - f.maxProbability));
   double total = 0;
   for (int k = 1; k <= kViewClasses; ++k)
-    total += sum[k] = std::exp(f.calibration.power * std::max(sum[k], lowest));
+    total += sum[k] = (f.calibration.factors.empty()
+                           ? 1
+                           : std::pow(f.calibration.factors[k - 1], std::sqrt(weights / divisor))) *
+                      std::exp(f.calibration.power * std::max(sum[k], lowest));
   for (int k = 1; k <= kViewClasses; ++k) sum[k] *= (own ? 1 - f.calibration.shared : 1) / total;
   for (int i = 0; own && i < own->count; ++i) sum[own->ids[i]] += f.calibration.shared / own->count;
   return sum;
@@ -142,6 +148,9 @@ TEST(SmoothedView, addsWhatNeighborsTellAsDocumented) {
     SemanticOcTree map = mapOfScans(seed);
     for (const double weight : {0.1, 0.4, 1.0}) {
       map.setCalibration(weight == 0.1 ? Calibration{0.15, 0} : Calibration{0.3, 0.2});
+      std::vector<double> factors(kViewClasses, 0.9);
+      factors[1] = 1.5;
+      if (weight == 0.4) map.setCalibration({0.3, 0.2, factors});
       const SmoothedView view(map, {weight});
       const double repeated = repeatedIn(map, weight);
 

@@ -124,6 +124,26 @@ TEST(MapStreamFaults, frequentRecordsThatCannotBeAreRefused) {
   }
 }
 
+TEST(MapStreamFaults, statementsThatCannotBeAreRefused) {
+  SemanticOcTree map = smallPlace(someOptions(0.01));
+  TreeMessage fine = TreeMessage::of(TreeBroadcast(map, kStream).change());
+  TreeCopy copy;
+  const auto refused = [&](const Calibration& stated) {
+    TreeMessage message = fine;
+    message.stated = stated;
+    EXPECT_EQ(TreeMessage::of(message.bytes()).stated.factors, stated.factors);
+    return contains(errorOf([&] { copy.accept(message.bytes()); }), "altered");
+  };
+  std::vector<double> factors(K, 0.5);
+  EXPECT_TRUE(refused({0, 0}));
+  EXPECT_TRUE(refused({5, 0}));
+  EXPECT_TRUE(refused({1, 0, {1, 2}}));
+  EXPECT_FALSE(refused({1, 0, factors}));
+  factors[1] = -1;
+  ++fine.number;
+  EXPECT_TRUE(refused({1, 0, factors}));
+}
+
 TEST(MapStreamFaults, nothingStaysOfADescriptionThatFailed) {
   MapReceiver receiver(kStream);
   const auto accept = [&](std::uint32_t number, const std::string& content) {

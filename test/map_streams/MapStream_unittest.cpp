@@ -30,6 +30,16 @@ TEST(MapStream, arrivesToTheLastBit) {
       }
 }
 
+namespace {
+
+std::vector<double> someFactors() {
+  std::vector<double> factors(K, 0.5);
+  factors[0] = 3;
+  return factors;
+}
+
+}  // namespace
+
 TEST(MapStream, whatACalibratedMapStatesArrivesWithEachChange) {
   SemanticOcTree map = smallPlace(someOptions(0.001));
   MapSender sender(kStream);
@@ -38,6 +48,7 @@ TEST(MapStream, whatACalibratedMapStatesArrivesWithEachChange) {
   std::set<double> powers;
   for (const double power : {0.5, 0.8, 1.2}) {
     map.setCalibration({power, 0.1});
+    if (power > 1) map.setCalibration({power, 0.1, someFactors()});
     sender.setMap(map, false);
     transmit(sender, receiver, there, back);
     const SemanticOcTree compressed = Abstraction(map).compressedMap();

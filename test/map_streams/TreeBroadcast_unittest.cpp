@@ -100,15 +100,18 @@ TEST(TreeBroadcast, tellsWhatTheTreeStatesOnceTheMapIsCalibrated) {
   Broadcast b(someOptions(0.001));
   for (const PosedCloud& scan : scansOfSmallPlace(3, 2000, K, 7)) b.insert(scan);
   std::set<std::string> trees;
-  for (const double power : {1.0, 0.5, 0.8}) {
+  for (const double power : {1.0, 0.5, 0.8, 0.9}) {
     b.map.setCalibration({power, power < 1 ? 0.1 : 0});
+    std::vector<double> factors(K, 0.5);
+    factors[0] = 3;
+    if (power == 0.9) b.map.setCalibration({power, 0.1, factors});
     EXPECT_TRUE(b.isTold()) << power;
     trees.insert(b.tree());
     TreeCopy late;
     EXPECT_TRUE(late.accept(b.sender.all()));
     EXPECT_TRUE(fileOf(late.map()) == b.tree()) << power;
   }
-  EXPECT_EQ(trees.size(), 3u);
+  EXPECT_EQ(trees.size(), 4u);
 }
 
 TEST(TreeBroadcast, aChangeTakesWhatChanged) {

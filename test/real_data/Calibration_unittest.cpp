@@ -78,8 +78,10 @@ TEST(StreetCalibration, makesTheTruthLikelierInAMapOfWrongLabels) {
       const Evaluation stated = street.evaluate(street.map);
       street.map.setCalibration({});
       const Evaluation believed = street.evaluate(street.map);
-      EXPECT_LT(stated.logLoss(), believed.logLoss()) << sequence << ' ' << share;
-      EXPECT_LT(stated.calibrationError(), 0.07) << sequence << ' ' << share;
+      const auto name = std::string(sequence) + ' ' + std::to_string(share);
+      EXPECT_LT(stated.logLoss(), 0.75 * believed.logLoss()) << name;
+      EXPECT_GT(stated.accuracy(), believed.accuracy() + 0.03) << name;
+      EXPECT_LT(stated.calibrationError(), 0.07) << name;
     }
 }
 

@@ -246,12 +246,16 @@ TEST(CompressedClasses, areThoseThatAreBelievedWhateverIsStated) {
   SemanticOcTree map = smallMap();
   setAbstraction(map, keepingPosts());
   SemanticOcTree before = map;
-  map.setCalibration({0.6, 0.2});
-  SemanticOcTree again = map;
-  setAbstraction(again, keepingPosts());
-  EXPECT_TRUE(again == before);  // its G-values, too
-  const SemanticOcTree compressed = Abstraction(map).compressedMap();
-  EXPECT_TRUE(compressed == Abstraction(before).compressedMap());
+  std::vector<double> factors(static_cast<std::size_t>(map.numClasses()), 0.5);
+  factors[1] = 3;
+  for (const Calibration& calibration : {Calibration{0.6, 0.2}, Calibration{0.6, 0.2, factors}}) {
+    map.setCalibration(calibration);
+    SemanticOcTree again = map;
+    setAbstraction(again, keepingPosts());
+    EXPECT_TRUE(again == before);  // its G-values, too
+    const SemanticOcTree compressed = Abstraction(map).compressedMap();
+    EXPECT_TRUE(compressed == Abstraction(before).compressedMap());
+  }
   EXPECT_TRUE(Abstraction(before).compressedMap().filterParameters().calibration.isIdentity());
 }
 
@@ -263,6 +267,13 @@ TEST(CompressedClasses, areStatedAsTheMapDoesWhereNoCellsAreMerged) {
     map.setCalibration({power, 0});
     EXPECT_NEAR(Abstraction(map).compressedMap().filterParameters().calibration.power, power, 0.02);
   }
+  std::vector<double> factors(static_cast<std::size_t>(map.numClasses()), 1);
+  factors[1] = 0.2;
+  map.setCalibration({0.8, 0, factors});
+  const Calibration found = Abstraction(map).compressedMap().filterParameters().calibration;
+  EXPECT_NEAR(found.power, 0.8, 0.05);
+  ASSERT_EQ(found.factors.size(), factors.size());
+  EXPECT_NEAR(found.factors[1] / found.factors[0], 0.2, 0.1);
 }
 
 namespace {

@@ -55,6 +55,31 @@ TEST(Calibration, isAPowerAndWhatNamedClassesShare) {
   EXPECT_TRUE(filterOf(0.3, 0.3).stated(filterOf(1, 0).uniform(1)) == filterOf(1, 0).uniform(1));
 }
 
+TEST(Calibration, hasFactorsOfClasses) {
+  const ClassBelief<double> belief = someBelief();
+  const auto p = classesOf(belief);
+  FilterParameters parameters;
+  parameters.calibration = {0.6, 0.3, {2, 0.25, 300, 0.5, 4, 0.01, 1}};
+  const std::vector<double>& w = parameters.calibration.factors;
+  const ClassFilter<double> filter(kSevenClasses, parameters);
+  double sum = 0;
+  for (int k = 1; k <= kSevenClasses; ++k) sum += w[k - 1] * std::pow(p[k], 0.6);
+  std::vector<double> expected(kSevenClasses + 1), all(kSevenClasses + 1);
+  for (int k = 1; k <= kSevenClasses; ++k)
+    expected[k] = 0.7 * w[k - 1] * std::pow(p[k], 0.6) / sum + (k == 2 || k == 4 ? 0.15 : 0);
+  filter.distribution(belief, all.data());
+  const ClassBelief<double> stated = filter.stated(belief);
+  const auto s = classesOf(stated);
+  EXPECT_EQ(stated.ids, (std::array<ClassId, 3>{3, 4, 2}));  // 3 is not named, but frequent
+  const double others = (expected[1] + expected[5] + expected[6] + expected[7]) / 4;
+  for (int k = 1; k <= kSevenClasses; ++k) {
+    EXPECT_NEAR(all[k] / (1 - all[0]), expected[k], 1e-9) << k;
+    EXPECT_NEAR(s[k], k >= 2 && k <= 4 ? expected[k] : others, 1e-9) << k;
+  }
+  EXPECT_NEAR(stated.occupancyLogOdds(kSevenClasses), belief.occupancyLogOdds(kSevenClasses), 1e-9);
+  EXPECT_TRUE(filter.stated(filter.uniform(1)) == filter.uniform(1));
+}
+
 TEST(Calibration, isOfWhatMapsStateAndNotOfTheirBeliefs) {
   ClassTable classes;
   for (int i = 1; i <= kSevenClasses; ++i) classes.add("class " + std::to_string(i), {});
@@ -82,7 +107,13 @@ TEST(Calibration, isOfWhatMapsStateAndNotOfTheirBeliefs) {
   EXPECT_THROW(map.setCalibration({4.5, 0}), std::invalid_argument);
   map.setCalibration({4, 0});
   EXPECT_GT(map.query(2.5, 0.5, 0.5).probability, was.probability);
+  map.setCalibration({1, 0, {1, 30, 1, 1, 1, 1, 1}});
+  EXPECT_EQ(map.query(2.5, 0.5, 0.5).likeliestClass, 2);
+  EXPECT_TRUE(map == before);
   map.setCalibration({0.4, 0.2});
+  for (const double bad : {0.0, -1.0, 1e-6, 1e6, double(NAN), HUGE_VAL})
+    EXPECT_THROW(map.setCalibration({0.5, 0, {1, 1, 1, 1, 1, 1, bad}}), std::invalid_argument);
+  EXPECT_THROW(map.setCalibration({0.5, 0, {1, 1}}), std::invalid_argument);
   EXPECT_THROW(map.setCalibration({0.5, 1}), std::invalid_argument);
   EXPECT_EQ(map.filterParameters().calibration.power, 0.4);
 }

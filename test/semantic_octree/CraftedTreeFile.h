@@ -56,25 +56,28 @@ inline std::string contentIn(const std::string& file) {
 /** What precedes a map's nodes. */
 struct Header {
   double resolution = 0.5;
-  std::uint8_t pruning = 1, free = 0, policy = 0;
+  std::uint8_t pruning = 1, hasFactors = 0, policy = 0;
   double accuracy = 0.9, hitProbability = 0.6, falseAlarmProbability = 0.1, minOccupancy = 0.12,
          maxProbability = 0.97, softLabelFloor = 0.001, labelCorrelation = 0.2, power = 0.7,
          shared = 0.2, halfLife = 0;
   std::vector<std::string> names = {"a", "b"};
   std::uint32_t numFolds = 0;
   std::int64_t clock = 0;
+  std::vector<double> factors;
   std::uint64_t numNodes = 0;
 
   std::string bytes() const {
     std::string bytes =
-        bytesOf(resolution, pruning, free, accuracy, hitProbability, falseAlarmProbability,
+        bytesOf(resolution, pruning, hasFactors, accuracy, hitProbability, falseAlarmProbability,
                 minOccupancy, maxProbability, softLabelFloor, labelCorrelation, power, shared);
     append(bytes, static_cast<std::uint8_t>(names.size()));
     for (const std::string& name : names)
       bytes += bytesOf(static_cast<std::uint16_t>(name.size())) + name + "rgb";
     bytes += bytesOf(policy, numFolds);
     for (std::size_t id = 0; id <= names.size(); ++id) append(bytes, halfLife);
-    return bytes + bytesOf(clock, numNodes);
+    append(bytes, clock);
+    for (const double factor : factors) append(bytes, factor);
+    return bytes + bytesOf(numNodes);
   }
 };
 

@@ -82,6 +82,18 @@ TEST(TreeFile, bringsEveryBitBack) {
   }
 }
 
+TEST(TreeFile, bringsFactorsOfClassesBack) {
+  SemanticOcTree tree = someTree();
+  const std::string without = fileOf(tree);
+  std::vector<double> factors(static_cast<std::size_t>(tree.numClasses()), 0.3);
+  factors.back() = 7;
+  tree.setCalibration({0.6, 0.1, factors});
+  EXPECT_EQ(treeOf(fileOf(tree)).filterParameters().calibration.factors, factors);
+  EXPECT_EQ(fileOf(treeOf(fileOf(tree))), fileOf(tree));
+  tree.setCalibration({0.6, 0.1});
+  EXPECT_EQ(fileOf(tree), without);
+}
+
 TEST(TreeFile, bringsEmptyMapsAndManyClassesBack) {
   for (const int classes : {1, 2, 3, 254}) {
     SemanticOcTree tree(0.1, numberedClasses(classes));
@@ -245,7 +257,14 @@ TEST(CraftedTreeFile, ofSenselessHeadersIsRefused) {
   EXPECT_TRUE(contains(error(with([](Header& h) { h.resolution = -1; })), "resolution"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.resolution = NAN; })), "resolution"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.pruning = 2; })), "pruning"));
-  EXPECT_TRUE(contains(error(with([](Header& h) { h.free = 7; })), "increments"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.hasFactors = 7; })), "factors of classes"));
+  EXPECT_TRUE(contains(error(with([](Header& h) { h.hasFactors = 1; })), "too early"));
+  EXPECT_EQ(error(with([](Header& h) { h.hasFactors = 1, h.factors = {2, 0.5}; })), "");
+  for (const double bad : {-1.0, 0.0, 1e9, static_cast<double>(NAN)})
+    EXPECT_TRUE(contains(error(with([&](Header& h) {
+                           h.hasFactors = 1, h.factors = {1, bad};
+                         })),
+                         "factors"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.accuracy = 3; })), "accuracy"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.minOccupancy = 1e-12; })), "min_occupancy"));
   EXPECT_TRUE(contains(error(with([](Header& h) { h.labelCorrelation = 1.01; })), "correlation"));

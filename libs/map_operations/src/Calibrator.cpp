@@ -24,6 +24,13 @@ constexpr double kLabelsOfMatrix = 1000, kLabelsOfFit = 20;
 /** Labels of a voxel that are too few to outvote each other. */
 constexpr std::size_t kFew = 2;
 constexpr double kSteps = 256;
+/** Log-odds (ln 25) of two classes from which on a voxel is of one of them. */
+constexpr double kOfOne = 3.2;
+/** Labels err if more voxels than one in so many differ away from borders: of right labels one in
+ * 70 to 3000 do, of labels that are wrong in 2 % one in 40, of 5 to 10 % one in 16 to 7. */
+constexpr double kDiffering = 25;
+/** Voxels that were looked at before, whose labels did not differ. */
+constexpr double kVoxelsBefore = 100;
 
 /** Voxels on each side of the map's origin. */
 constexpr int kHalf = 1 << 15;
@@ -45,6 +52,25 @@ void check(const LabeledCloud& cloud, std::size_t numClasses) {
   if (cloud.probabilities.empty() ? !cloud.classes.empty() && cloud.classes.size() != cloud.size()
                                   : cloud.probabilities.size() != numClasses * cloud.size())
     throw std::invalid_argument("calibration: labels of another number of points");
+}
+
+/** Whether beside a voxel lie both classes: a voxel that is of one rather than of the other, and
+ * one the other way. */
+bool isAtBorder(const SemanticOcTree& map, const octomap::OcTreeKey& voxel, ClassId a, ClassId b) {
+  bool hasA = false, hasB = false;
+  for (int i = 0; i < 27; ++i) {
+    if (i == 13) continue;  // the voxel itself
+    const auto beside = [i, &voxel](int axis, int step) {
+      return static_cast<octomap::key_type>(voxel[axis] + i / step % 3 - 1);
+    };
+    const SemanticOcTreeNode leaf = map.search({beside(0, 1), beside(1, 3), beside(2, 9)});
+    if (!leaf || !leaf.hasClassRecord() || leaf.getLogOdds() <= 0) continue;
+    const SemanticOcTree::Belief belief = map.belief(leaf);
+    const double lead = belief.logOddsOf(a) - belief.logOddsOf(b);
+    hasA = hasA || lead > kOfOne;
+    hasB = hasB || -lead > kOfOne;
+  }
+  return hasA && hasB;
 }
 
 }  // namespace
@@ -100,15 +126,26 @@ void Calibrator::keepFewer() {
     i = keeps(i->first) ? std::next(i) : m_voxels.erase(i);
 }
 
-LabelProcess Calibrator::process(double accuracy, double labelsBefore) const {
+LabeledVoxels Calibrator::seenAgain() const {
   LabeledVoxels voxels;
   for (const auto& [voxel, labels] : m_voxels)
     if (labels.size() > 1) ++voxels[labels];
-  return LabelProcess(voxels, m_numClasses, accuracy, labelsBefore);
+  return voxels;
+}
+
+bool Calibrator::labelsErr(const SemanticOcTree& map) const {
+  double looked = kVoxelsBefore, differ = 0;
+  for (const auto& [voxel, labels] : m_voxels) {
+    if (labels.size() < 2) continue;
+    ++looked;
+    const auto first = static_cast<ClassId>(labels[0]), second = static_cast<ClassId>(labels[1]);
+    if (first != second && !isAtBorder(map, keyOf(voxel), first, second)) ++differ;
+  }
+  return kDiffering * differ > looked;
 }
 
 std::vector<std::vector<double>> Calibrator::confusion(double accuracy) const {
-  return process(accuracy, kLabelsOfMatrix).counts();
+  return LabelProcess(seenAgain(), m_numClasses, accuracy, kLabelsOfMatrix).counts();
 }
 
 std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) const {
@@ -124,22 +161,41 @@ std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) con
       beliefs.emplace_back(voxel, map.belief(leaf));
   }
   if (beliefs.empty()) return [has] { return has; };
-  return [has, numLabels, beliefs = std::move(beliefs), labels = *this,
-          accuracy = map.filterParameters().accuracy]() mutable {
+  const FilterParameters& parameters = map.filterParameters();
+  const bool hasFactors = parameters.classPrior.empty() && (!has.factors.empty() || labelsErr(map));
+  return [has, numLabels, hasFactors, beliefs = std::move(beliefs), labels = *this,
+          accuracy = parameters.accuracy]() mutable {
     std::sort(beliefs.begin(), beliefs.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
-    const LabelProcess process = labels.process(accuracy, kLabelsOfFit);
+    const LabeledVoxels seen = labels.seenAgain();
+    const int numClasses = labels.m_numClasses;
+    std::vector<LabelProcess> processes;
+    processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit);
+    if (hasFactors)
+      processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit, kLabelsOfMatrix);
+    const double asRight = hasFactors ? 1 - processes[0].leastCorrelation() : 0;
     CalibrationFit fit;
     for (const auto& [voxel, belief] : beliefs) {
       const std::string& ofVoxel = labels.m_voxels.at(voxel);
-      fit.add(belief, process.classesOf(ofVoxel), static_cast<double>(ofVoxel.size()));
+      std::vector<double> q = processes[0].classesOf(ofVoxel);
+      if (hasFactors) {
+        const std::vector<double> right = processes[1].classesOf(ofVoxel);
+        for (std::size_t k = 0; k < q.size(); ++k) q[k] += asRight * (right[k] - q[k]);
+      }
+      fit.add(belief, q, static_cast<double>(ofVoxel.size()));
     }
-    const Calibration found = fit.fit({0.7, 0.1});
+    const std::vector<double> none(hasFactors ? static_cast<std::size_t>(numClasses) : 0, 1.0);
+    Calibration found = fit.fit({0.7, 0.1, none});
     const auto together = [numLabels](double had, double fits) {
-      const double mean = (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);
-      return std::round(kSteps * mean) / kSteps;
+      return (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);
     };
-    return Calibration{together(has.power, found.power), together(has.shared, found.shared)};
+    const auto inSteps = [&](double had, double fits) {
+      return std::round(kSteps * together(had, fits)) / kSteps;
+    };
+    for (std::size_t k = 0; k < found.factors.size(); ++k)
+      found.factors[k] = together(has.factors.empty() ? 1 : has.factors[k], found.factors[k]);
+    return Calibration{inSteps(has.power, found.power), inSteps(has.shared, found.shared),
+                       found.factors};
   };
 }
 

@@ -9,7 +9,9 @@ namespace {
 /** Triples of labels before any are seen, which repeat nothing. Right labels differ at borders
  * alone: of a few dozen such triples, chance makes a share that says nothing. */
 constexpr double kTriplesBefore = 100;
-constexpr int kExpectations = 25;
+/** Rounds of the search. Of two classes, one of which is taken for the other in every second case,
+ * the rare one loses what it has of the frequent one slowly. */
+constexpr int kExpectations = 25, kExpectationsFromRight = 100;
 /** Where the search for the correlation begins, and how far it goes. */
 constexpr double kCorrelationBefore = 0.1, kMostCorrelation = 0.9, kFirstStride = 1,
                  kNextStride = 0.85;
@@ -36,19 +38,25 @@ double repeatedIn(const LabeledVoxels& voxels) {
 }  // namespace
 
 LabelProcess::LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy,
-                           double labelsBefore)
+                           double labelsBefore, double labelsAtFirst)
     : m_repeated(repeatedIn(voxels)) {
-  const double least = std::min(1 - (1 - m_repeated) * (1 - m_repeated), kMostCorrelation);
+  const double least = std::min(leastCorrelation(), kMostCorrelation);
   m_correlation = std::max(least, kCorrelationBefore);
   const auto K = static_cast<std::size_t>(numClasses);
   const double wrong = (1 - accuracy) / (numClasses - 1);
-  Table before(K, std::vector<double>(K, labelsBefore * wrong));
-  for (std::size_t k = 0; k < K; ++k) before[k][k] = labelsBefore * accuracy;
+  const auto rightLabels = [&](double labels) {
+    Table before(K, std::vector<double>(K, labels * wrong));
+    for (std::size_t k = 0; k < K; ++k) before[k][k] = labels * accuracy;
+    return before;
+  };
+  const Table before = rightLabels(labelsBefore),
+              atFirst = rightLabels(std::max(labelsBefore, labelsAtFirst));
   m_counts = before;
   m_shares.assign(K, 1.0);
   double stride = kFirstStride;
-  for (int round = 0; round < kExpectations; ++round) {
-    const double slope = step(voxels, before);
+  const int rounds = labelsAtFirst > 0 ? kExpectationsFromRight : kExpectations;
+  for (int round = 0; round < rounds; ++round) {
+    const double slope = step(voxels, round < rounds / 2 ? atFirst : before);
     m_correlation *= slope > 0 ? 1 + stride : 1 / (1 + stride);
     m_correlation = std::clamp(m_correlation, least, kMostCorrelation);
     stride *= kNextStride;

@@ -23,9 +23,13 @@ class LabelProcess {
  public:
   /** \param numClasses K > 1
    * \param accuracy, labelsBefore Beside what was seen, so many labels of each class are right
-   * with this probability, (1/K, 1). */
-  LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy, double labelsBefore);
+   * with this probability, (1/K, 1). \param labelsAtFirst if more, in the first half of the search.
+   * Where labels are wrong often, that keeps classes from being taken for each other. */
+  LabelProcess(const LabeledVoxels& voxels, int numClasses, double accuracy, double labelsBefore,
+               double labelsAtFirst = 0);
 
+  /** 1 - (1 - c)^2: that one of two scans repeats the one before. */
+  double leastCorrelation() const { return 1 - (1 - m_repeated) * (1 - m_repeated); }
   /** c, [0, 1): of three labels in succession, the first two of which differ, how much more often
    * the third is the second than the first. */
   double repeated() const { return m_repeated; }

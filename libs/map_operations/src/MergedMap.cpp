@@ -123,13 +123,19 @@ SemanticOcTree emptySumOf(const std::vector<const SemanticOcTree*>& maps) {
   return sum;
 }
 
-/** The lowest power and the largest share: the same however sums are grouped. */
+/** The lowest power, the largest share, and the factors next to 1: the same however sums are
+ * grouped. */
 Calibration mostCautious(const std::vector<const SemanticOcTree*>& maps) {
-  Calibration calibration;
+  Calibration calibration{1, 0, maps.front()->filterParameters().calibration.factors};
+  std::vector<double>& factors = calibration.factors;
   for (const SemanticOcTree* map : maps) {
     const Calibration& own = map->filterParameters().calibration;
     calibration.power = std::min(calibration.power, own.power);
     calibration.shared = std::max(calibration.shared, own.shared);
+    if (own.factors.empty()) factors.clear();
+    for (std::size_t k = 0; k < factors.size(); ++k)
+      factors[k] = std::max(std::min(factors[k], std::max(own.factors[k], 1.0)),
+                            std::min(own.factors[k], 1.0));
   }
   return calibration;
 }

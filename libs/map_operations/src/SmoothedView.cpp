@@ -46,8 +46,9 @@ SemanticOcTreeNode labeledLeaf(const SemanticOcTree& map, const Eigen::Array3i& 
   return leaf && leaf.hasClassRecord() ? leaf : SemanticOcTreeNode();
 }
 
-/** No neighbor tells more than odds of 25: a border of two classes may lie between. */
-constexpr double kMostOfNeighbor = 3.2;  // ln 25
+/** No neighbor tells more than odds of 25: a border of two classes may lie between. Odds of 9 where
+ * classes have factors, which tell a part of it. */
+constexpr double kMostOfNeighbor = 3.2, kMostBesideFactors = 2.2;  // ln 25, ln 9
 /** At most about so many log-odds are kept to find out how far neighbors repeat each other. */
 constexpr std::size_t kAsked = 1 << 22;
 /** How often the search for that is halved. */
@@ -83,8 +84,9 @@ void SmoothingOptions::validate() const { strict_files::checkOptions(*this, "Smo
 /** What a voxel and its neighbors tell together. */
 struct SmoothedView::Heard {
   SemanticOcTree::Belief own;
-  std::vector<double> logOdds;  ///< summed, up to a constant
-  double weight = 0;            ///< summed, 1 for the voxel
+  std::vector<double> logOdds;   ///< summed, up to a constant
+  double weight = 0;             ///< summed, 1 for the voxel
+  std::ptrdiff_t likeliest = 0;  ///< the class that the voxel by itself is surest of, from 0
 };
 
 SmoothedView::SmoothedView(const SemanticOcTree& map, const SmoothingOptions& options)
@@ -106,13 +108,15 @@ double SmoothedView::repeatedInMap() const {
     if (!leaf->hasClassRecord() || !m_map.isNodeOccupied(*leaf)) continue;
     const octomap::OcTreeKey key = leaf.getKey();
     const Eigen::Array3i voxel(key[0], key[1], key[2]);
-    const Heard alone = listen(voxel, 0);
-    own += stated(alone, 0)[alone.own.ids[0] - 1];
+    const std::vector<double> alone = stated(listen(voxel, 0), 0);
+    const auto likeliest = std::max_element(alone.begin(), alone.end());
+    own += *likeliest;
     asked.push_back(listen(voxel, m_options.neighborWeight));
+    asked.back().likeliest = likeliest - alone.begin();
   }
   return shareWithoutGain(kHalvings, [&](double repeated) {
     double gain = -own;
-    for (const Heard& heard : asked) gain += stated(heard, repeated)[heard.own.ids[0] - 1];
+    for (const Heard& heard : asked) gain += stated(heard, repeated)[heard.likeliest];
     return gain;
   });
 }
@@ -158,21 +162,29 @@ SmoothedView::Heard SmoothedView::listen(const Eigen::Array3i& voxel, double wei
   heard.logOdds.assign(static_cast<std::size_t>(m_map.numClasses()), 0.0);
   const SemanticOcTreeNode leaf = labeledLeaf(m_map, voxel);
   if (leaf) heard.weight = add(heard.own = m_map.belief(leaf), 1, HUGE_VAL, heard.logOdds);
+  const bool hasFactors = !m_map.filterParameters().calibration.factors.empty();
+  const double most = hasFactors ? kMostBesideFactors : kMostOfNeighbor;
   const auto end = leaf ? neighbors().begin() + kFaces : neighbors().end();
   for (auto n = neighbors().begin(); weight > 0 && n != end; ++n)
     if (const SemanticOcTreeNode next = labeledLeaf(m_map, voxel + n->offset))
-      heard.weight += add(m_map.belief(next), weight * n->share, kMostOfNeighbor, heard.logOdds);
+      heard.weight += add(m_map.belief(next), weight * n->share, most, heard.logOdds);
   return heard;
 }
 
 std::vector<double> SmoothedView::stated(const Heard& heard, double repeated) const {
-  const auto [power, shared] = m_map.filterParameters().calibration;
+  const auto& [power, shared, factors] = m_map.filterParameters().calibration;
   const SemanticOcTree::Belief& own = heard.own;
   const double repeats = 1 + repeated * std::max(0.0, heard.weight - 1);
+  // A factor says how frequent a class is, which counts once, and for what its labels are taken,
+  // which each voxel's labels tell again. How much of it is which is not known: the mean of both.
+  const double again = std::sqrt(std::max(1.0, heard.weight) / repeats);
   std::vector<double> p = heard.logOdds;
   const double highest = *std::max_element(p.begin(), p.end());
   double sum = 0;
-  for (double& x : p) sum += x = std::exp(power * std::max((x - highest) / repeats, -m_mostBehind));
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    p[k] = std::exp(power * std::max((p[k] - highest) / repeats, -m_mostBehind));
+    sum += p[k] *= factors.empty() ? 1 : std::pow(factors[k], again);
+  }
   for (double& x : p) x *= (own.count > 0 ? 1 - shared : 1) / sum;
   for (int i = 0; i < own.count; ++i) p[own.ids[i] - 1] += shared / own.count;
   return p;

@@ -100,7 +100,7 @@ void MapReceiver::State::describe(std::size_t number, const std::string& content
     tree = StreamTree();  // what was placed after another description, which failed
     waiting.clear();
   }
-  kind.empty->setCalibration({d.power, 0});
+  kind.calibrate(d.stated);
   checksum = d.checksum;
   for (const std::string& packet : unreadable) apply(packet);
   unreadable.clear();

@@ -89,7 +89,7 @@ std::vector<Packet> MapSender::State::description(const SemanticOcTree& compress
                                                   const SemanticOcTree& like) const {
   StreamDescription d;
   d.checksum = checksumOf(compressed);
-  d.power = compressed.filterParameters().calibration.power;
+  d.stated = compressed.filterParameters().calibration;
   d.rootDepth = static_cast<std::uint8_t>(with.rootDepth());
   if (header.revision == 0) {
     d.coding = with.toText();

@@ -183,17 +183,13 @@ PacketHeader PacketHeader::of(const std::string& payload) {
 
 namespace {
 
-void checkPower(double power) {
-  if (!(power > 0 && power <= 4)) throw std::runtime_error("altered: a power that cannot be");
-}
-
 template <class Bytes, class Description>
 void codeDescription(Bytes& bytes, Description& d) {
   bytes.value(d.checksum);
   bytes.value(d.rootDepth);
   bytes.text(d.coding);
   bytes.text(d.kind);
-  bytes.value(d.power);
+  bytes.value(d.stated.power);
 }
 
 }  // namespace
@@ -201,6 +197,7 @@ void codeDescription(Bytes& bytes, Description& d) {
 std::string StreamDescription::compressed() const {
   ByteWriter plain, result;
   codeDescription(plain, *this);
+  if (!stated.factors.empty()) plain.list(stated.factors);
   uLongf size = compressBound(plain.bytes.size());
   std::string packed(size, '\0');
   compress2(reinterpret_cast<Bytef*>(&packed[0]), &size,
@@ -225,8 +222,16 @@ StreamDescription StreamDescription::of(const std::string& compressed) {
   StreamDescription d;
   codeDescription(reader, d);
   if (d.rootDepth > kTreeDepth) throw std::runtime_error("altered: trees below the voxels");
-  checkPower(d.power);
+  if (!reader.rest().empty()) reader.list(d.stated.factors);
   return d;
+}
+
+void StreamKind::calibrate(const Calibration& stated) {
+  try {
+    empty->setCalibration(stated);
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(std::string("altered: ") + e.what());
+  }
 }
 
 StreamKind StreamDescription::read() const {
@@ -322,7 +327,8 @@ Datagram Datagram::of(const std::string& bytes) {
 namespace {
 
 using TreeMark = std::array<char, 4>;
-constexpr TreeMark kTreeMark{'S', 'O', 'T', 1};  // the last one is the version
+// The last one is the version: 2 where classes have factors.
+constexpr TreeMark kTreeMark{'S', 'O', 'T', 1}, kFactorsMark{'S', 'O', 'T', 2};
 
 template <class Bytes, class Message>
 void codeMessage(Bytes& bytes, Message& m) {
@@ -330,7 +336,7 @@ void codeMessage(Bytes& bytes, Message& m) {
   bytes.value(m.number);
   bytes.flag(m.isAll);
   bytes.text(m.description);
-  bytes.value(m.power);
+  bytes.value(m.stated.power);
 }
 
 }  // namespace
@@ -338,8 +344,9 @@ void codeMessage(Bytes& bytes, Message& m) {
 std::string TreeMessage::bytes() const {
   ByteWriter writer;
   writer.value(std::uint32_t(0));  // the checksum
-  writer.value(kTreeMark);
+  writer.value(stated.factors.empty() ? kTreeMark : kFactorsMark);
   codeMessage(writer, *this);
+  if (!stated.factors.empty()) writer.list(stated.factors);
   writer.value(static_cast<std::uint32_t>(parts.size()));
   for (const std::string& group : parts) writer.text(group);
   return checked(std::move(writer.bytes));
@@ -348,13 +355,14 @@ std::string TreeMessage::bytes() const {
 TreeMessage TreeMessage::of(const std::string& bytes) {
   ByteReader reader(bytes);
   const auto crc = reader.take<std::uint32_t>();
-  if (reader.take<TreeMark>() != kTreeMark)
+  const auto mark = reader.take<TreeMark>();
+  if (mark != kTreeMark && mark != kFactorsMark)
     throw std::runtime_error("no change of a compressed tree, or one of another version");
   if (crc != crcOf(bytes))
     throw std::runtime_error("altered: a change whose checksum does not match");
   TreeMessage m;
   codeMessage(reader, m);
-  checkPower(m.power);
+  if (mark == kFactorsMark) reader.list(m.stated.factors);
   for (auto groups = reader.take<std::uint32_t>(); groups > 0; --groups)
     reader.text(m.parts.emplace_back());
   return m;

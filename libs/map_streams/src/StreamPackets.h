@@ -57,6 +57,9 @@ constexpr std::size_t kMaxContent = kMaxDatagramBytes - kHeaderBytes;
 struct StreamKind {
   std::unique_ptr<SemanticOcTree> empty;
   std::unique_ptr<PartCoder> coder;
+
+  /** \throw std::runtime_error altered. */
+  void calibrate(const Calibration& stated);
 };
 
 /** What is told before the parts: of the first map which classes it has, how its parts are coded,
@@ -66,7 +69,7 @@ struct StreamDescription {
   std::uint8_t rootDepth = 0;
   std::string coding;  ///< PartCoder::toText()
   std::string kind;    ///< an empty map as a file
-  double power = 1;    ///< of the map's calibration
+  Calibration stated;  ///< how the map's classes are
 
   std::string compressed() const;
   /** \throw std::runtime_error altered. */
@@ -80,7 +83,7 @@ struct TreeMessage {
   std::uint32_t stream = 0, number = 0;  ///< the tree is then that of so many changes
   bool isAll = false;                    ///< what it tells is all that there is
   std::string description;               ///< from here on; empty: the one before
-  double power = 1;                      ///< of the tree's calibration
+  Calibration stated;                    ///< how the tree's classes are
   std::vector<std::string> parts;        ///< as a PartCoder writes them
 
   std::string bytes() const;

@@ -21,20 +21,19 @@ struct TreeBroadcast::State {
   std::unique_ptr<PartCoder> coder;
   std::size_t learned = 0;  ///< from so many parts
   StreamTree told;
-  Calibration calibration;  ///< of the map when the power was fitted
-  double power = 1;
+  Calibration calibration, stated;  ///< of the map, and of the tree when it was fitted to that
   bool isFirst = true;
 
   std::optional<ChangedCells> changes();
   bool isAnother(const Abstraction& abstraction) const;
-  bool fitPower(const Abstraction& abstraction);
+  bool calibrate(const Abstraction& abstraction);
   std::string description() const;
   std::vector<std::string> encoded(const TreeParts& parts) const;
 };
 
 TreeBroadcast::TreeBroadcast(SemanticOcTree& map, std::uint32_t stream)
-    : m_state(
-          new State{map, stream, 0, map.follow(), LeafFollower(map), {}, {}, 0, {}, {}, 1, true}) {}
+    : m_state(new State{
+          map, stream, 0, map.follow(), LeafFollower(map), {}, {}, 0, {}, {}, {}, true}) {}
 TreeBroadcast::~TreeBroadcast() = default;
 TreeBroadcast::TreeBroadcast(TreeBroadcast&&) noexcept = default;
 
@@ -57,10 +56,10 @@ bool TreeBroadcast::State::isAnother(const Abstraction& abstraction) const {
 }
 
 /** Looks at all of the map, but only when its calibration is another. \return whether it is */
-bool TreeBroadcast::State::fitPower(const Abstraction& abstraction) {
+bool TreeBroadcast::State::calibrate(const Abstraction& abstraction) {
   const Calibration& now = map.filterParameters().calibration;
-  if (now.power == calibration.power && now.shared == calibration.shared) return false;
-  power = abstraction.compressedMap().filterParameters().calibration.power;
+  if (now == calibration) return false;
+  stated = abstraction.compressedMap().filterParameters().calibration;
   calibration = now;
   return true;
 }
@@ -109,13 +108,13 @@ std::string TreeBroadcast::change() {
   }
   message.stream = s.stream;
   message.number = s.number + 1;
-  const bool isPowerNew = s.fitPower(abstraction);
-  message.power = s.power;
+  const bool isStatedNew = s.calibrate(abstraction);
+  message.stated = s.stated;
   message.parts = s.encoded(parts);
   for (std::size_t i = 0; i < parts.parts.size(); ++i)
     s.told.apply(parts.parts.part(i), message.number);
   s.isFirst = false;
-  if (!message.isAll && message.parts.empty() && !isPowerNew) return {};
+  if (!message.isAll && message.parts.empty() && !isStatedNew) return {};
   s.number = message.number;
   return message.bytes();
 }
@@ -124,7 +123,7 @@ std::string TreeBroadcast::all() const {
   const State& s = *m_state;
   if (!s.coder) return {};
   return TreeMessage{s.stream,        s.number, true,
-                     s.description(), s.power,  s.encoded(partsOf(s.told, s.coder->rootDepth()))}
+                     s.description(), s.stated, s.encoded(partsOf(s.told, s.coder->rootDepth()))}
       .bytes();
 }
 
@@ -171,7 +170,7 @@ void TreeCopy::State::take(const TreeMessage& m) {
   if (!m.description.empty()) kind = StreamDescription::of(m.description).read();
   if (!kind.coder || (m.isAll && m.description.empty()))
     throw std::runtime_error("altered: nothing says of which kind the tree is");
-  kind.empty->setCalibration({m.power, 0});
+  kind.calibrate(m.stated);
   if (m.isAll) tree = StreamTree();
   for (const std::string& group : m.parts)
     for (const TreePart& part : kind.coder->decode(group))

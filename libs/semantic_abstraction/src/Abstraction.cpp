@@ -36,6 +36,7 @@ std::vector<double> classesOf(const SemanticOcTree::Belief& belief, const Calibr
   const auto odds = [&](float h) { return exactExponential(calibration.power * (h - most)); };
   std::vector<double> p(static_cast<std::size_t>(numClasses), odds(belief.rest));
   for (int i = 0; i < belief.count; ++i) p[belief.ids[i] - 1] = odds(belief.logOdds[i]);
+  for (std::size_t k = 0; k < calibration.factors.size(); ++k) p[k] *= calibration.factors[k];
   const double sum = std::accumulate(p.begin(), p.end(), 0.0);
   for (double& x : p) x *= (1 - calibration.shared) / sum;
   for (int i = 0; i < belief.count; ++i) p[belief.ids[i] - 1] += calibration.shared / belief.count;
@@ -45,20 +46,25 @@ std::vector<double> classesOf(const SemanticOcTree::Belief& belief, const Calibr
 /** About so many leaves are asked, and steps in which a power is told. */
 constexpr std::size_t kAskedLeaves = 1 << 14;
 constexpr double kPowerSteps = 256;
-/** How much a cell counts beside the statement of one of its voxels. */
-constexpr double kWeightOfCell = 2;
+/** How much a cell counts beside the statement of one of its voxels. Less where classes have
+ * factors: they tell what the cell would of its class. */
+constexpr double kWeightOfCell = 2, kWeightBesideFactors = 1;
 /** How often the search for what both are worth is halved. */
 constexpr int kHalvings = 12;
 
 /** A voxel, and its cell of the compressed map. */
 struct Asked {
   Asked(const SemanticOcTree::Belief& voxel, const SemanticOcTree::Belief& ofCell,
-        const Calibration& calibration, int numClasses)
-      : cell(ofCell), told(classesOf(voxel, calibration, numClasses)), likeliest(voxel.ids[0] - 1) {
+        const Calibration& calibration, int numClasses, bool isOneVoxel)
+      : cell(ofCell), told(classesOf(voxel, calibration, numClasses)) {
+    likeliest = voxel.ids[0] - std::size_t{1};
+    if (!calibration.factors.empty())
+      likeliest = std::max_element(told.begin(), told.end()) - told.begin();
     stated = told[likeliest];
+    const double besideFactors = isOneVoxel ? 0 : kWeightBesideFactors;
+    const double weight = calibration.factors.empty() ? kWeightOfCell : besideFactors;
     for (std::size_t k = 0; k < told.size(); ++k)
-      told[k] =
-          exactLogarithm(told[k]) + kWeightOfCell * cell.logOddsOf(static_cast<ClassId>(k + 1));
+      told[k] = exactLogarithm(told[k]) + weight * cell.logOddsOf(static_cast<ClassId>(k + 1));
     const double most = *std::max_element(told.begin(), told.end());
     for (double& x : told) x -= most;
   }
@@ -90,9 +96,9 @@ double trustIn(const std::vector<Asked>& asked) {
 
 /** Mixtures state too little: voxels of a cell err in different ways, so that the class of most of
  * them is right more often than each. What a voxel is follows from its own statement and from its
- * cell, and the compressed map's power makes that likely. Cells of one size are trusted alike; of a
- * single voxel that hears itself, nothing but its statement is left. A map that is not calibrated
- * has compressed maps that are not. */
+ * cell, and the compressed map's power and factors make that likely. Cells of one size are trusted
+ * alike; of a single voxel that hears itself, nothing but its statement is left. A map that is not
+ * calibrated has compressed maps that are not. */
 void calibrate(const SemanticOcTree& map, SemanticOcTree& compressed) {
   const Calibration& own = map.filterParameters().calibration;
   if (own.isIdentity()) return;
@@ -104,7 +110,8 @@ void calibrate(const SemanticOcTree& map, SemanticOcTree& compressed) {
     unsigned depth = 1;
     Node cell = compressed.search(leaf.getKey(), depth);
     while (!cell.isLeaf()) cell = compressed.search(leaf.getKey(), ++depth);
-    byDepth[depth].emplace_back(map.belief(*leaf), compressed.belief(cell), own, map.numClasses());
+    byDepth[depth].emplace_back(map.belief(*leaf), compressed.belief(cell), own, map.numClasses(),
+                                depth == map.getTreeDepth());
   }
   CalibrationFit fit;
   for (const auto& [depth, asked] : byDepth) {
@@ -112,8 +119,10 @@ void calibrate(const SemanticOcTree& map, SemanticOcTree& compressed) {
     for (const Asked& a : asked) fit.add(a.cell, a.together(trust), 1);
   }
   if (fit.empty()) return;
-  const double power = std::round(kPowerSteps * fit.fit({1, 0}).power) / kPowerSteps;
-  compressed.setCalibration({power, 0});
+  Calibration found = fit.fit({1, 0, std::vector<double>(own.factors.size(), 1.0)});
+  found.power = std::round(kPowerSteps * found.power) / kPowerSteps;
+  found.shared = 0;  // but for rounding
+  compressed.setCalibration(found);
 }
 
 /** A map's nodes, down to the compressed tree's leaves (see TreeBuilder). */

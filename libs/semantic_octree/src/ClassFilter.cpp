@@ -84,10 +84,12 @@ Real ClassFilter<Real, Named>::occupancyOf(const Belief& b) const {
 
 template <typename Real, int Named>
 auto ClassFilter<Real, Named>::stated(const Belief& b) const -> Belief {
-  const auto [power, shared] = m_parameters.calibration;
-  if (b.count == 0 || m_parameters.calibration.isIdentity()) return b;
+  const Calibration& calibration = m_parameters.calibration;
+  if (b.count == 0 || calibration.isIdentity()) return b;
+  if (!calibration.factors.empty()) return statedWithFactors(b);
+  const double power = calibration.power, shared = calibration.shared;
   const double most = b.count == m_numClasses ? b.logOdds[0] : std::max(b.logOdds[0], b.rest);
-  const auto powered = [&, power = power](Real h) { return std::exp(power * (h - most)); };
+  const auto powered = [&](Real h) { return std::exp(power * (h - most)); };
   double sum = b.unnamed(m_numClasses) * powered(b.rest);
   for (int i = 0; i < b.count; ++i) sum += powered(b.logOdds[i]);
   const double occupancy = b.occupancyLogOdds(m_numClasses), own = (1 - shared) / sum;
@@ -97,6 +99,49 @@ auto ClassFilter<Real, Named>::stated(const Belief& b) const -> Belief {
     s.logOdds[i] =
         rounded<Real>(occupancy + std::log(own * powered(b.logOdds[i]) + shared / b.count));
   return s;
+}
+
+template <typename Real, int Named>
+auto ClassFilter<Real, Named>::classesWithFactors(const Belief& b) const
+    -> std::array<double, semantic_types::kMaxClasses> {
+  const auto& [power, shared, factors] = m_parameters.calibration;
+  std::array<double, semantic_types::kMaxClasses> p;
+  const double most = b.count == m_numClasses ? b.logOdds[0] : std::max(b.logOdds[0], b.rest);
+  const double rest = std::exp(power * (b.rest - most));
+  for (int k = 0; k < m_numClasses; ++k) p[k] = factors[k] * rest;
+  for (int i = 0; i < b.count; ++i)
+    p[b.ids[i] - 1] = factors[b.ids[i] - 1] * std::exp(power * (b.logOdds[i] - most));
+  const double sum = std::accumulate(p.begin(), p.begin() + m_numClasses, 0.0);
+  for (int k = 0; k < m_numClasses; ++k) p[k] *= (1 - shared) / sum;
+  for (int i = 0; i < b.count; ++i) p[b.ids[i] - 1] += shared / b.count;
+  return p;
+}
+
+template <typename Real, int Named>
+auto ClassFilter<Real, Named>::statedWithFactors(const Belief& b) const -> Belief {
+  auto p = classesWithFactors(b);
+  const auto end = p.begin() + m_numClasses;
+  const double occupancy = b.occupancyLogOdds(m_numClasses);
+  Belief s;
+  for (const int named = std::min(Named, m_numClasses); s.count < named; ++s.count) {
+    const auto best = std::max_element(p.begin(), end);
+    s.ids[s.count] = static_cast<ClassId>(best - p.begin() + 1);
+    s.logOdds[s.count] = rounded<Real>(occupancy + std::log(*best));
+    *best = 0;
+  }
+  const double others = std::accumulate(p.begin(), end, 0.0);
+  if (others > 0) s.rest = rounded<Real>(occupancy + std::log(others / s.unnamed(m_numClasses)));
+  s.sort();
+  return s;
+}
+
+template <typename Real, int Named>
+void ClassFilter<Real, Named>::distribution(const Belief& b, double* p) const {
+  stated(b).distribution(m_numClasses, p);
+  if (b.count == 0 || m_parameters.calibration.factors.empty()) return;
+  const auto classes = classesWithFactors(b);
+  std::transform(classes.begin(), classes.begin() + m_numClasses, p + 1,
+                 [occupied = 1 - p[0]](double ofOccupied) { return occupied * ofOccupied; });
 }
 
 template <typename Real, int Named>

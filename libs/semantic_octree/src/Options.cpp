@@ -79,6 +79,14 @@ void FilterParameters::validate(int numClasses) const {
   all.add("calibration.power", copy.calibration.power, "", above(0).upTo(4), "");
   all.add("calibration.shared", copy.calibration.shared, "", atLeast(0).below(1), "");
   checkAll(all, "FilterParameters");
+  const std::vector<double>& factors = calibration.factors;
+  require(factors.empty() || factors.size() == static_cast<std::size_t>(numClasses),
+          "FilterParameters::calibration.factors", factors.size(),
+          "a number for each class, or none");
+  constexpr double kMost = Calibration::kMostFactor;
+  for (const double w : factors)
+    require(w >= 1 / kMost && w <= kMost, "FilterParameters::calibration.factors", w,
+            "1/65536 to 65536");
   require(numClasses >= 1 && numClasses <= semantic_types::kMaxClasses, "number of classes",
           numClasses, "1 to 254");
   require(classPrior.empty() || classPrior.size() == static_cast<std::size_t>(numClasses),

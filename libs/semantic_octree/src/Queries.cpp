@@ -10,17 +10,17 @@ namespace semantic_octree {
 namespace {
 
 /** Adds weight * distribution of the known leaves below a node. \return the weight that is known */
-double addMixture(const SemanticOcTree& tree, const Node& node, double weight,
-                  std::vector<double>& sum, std::vector<double>& scratch) {
+double addMixture(const SemanticOcTree& tree, const ClassFilter<float>& filter, const Node& node,
+                  double weight, std::vector<double>& sum, std::vector<double>& scratch) {
   if (node.isLeaf()) {
-    tree.statedBelief(node).distribution(tree.numClasses(), scratch.data());
+    filter.distribution(tree.belief(node), scratch.data());
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * scratch[k];
     return weight;
   }
   double known = 0;
   for (int i = 0; i < 8; ++i)
     if (const Node child = node.child(i))
-      known += addMixture(tree, child, weight / 8, sum, scratch);
+      known += addMixture(tree, filter, child, weight / 8, sum, scratch);
   return known;
 }
 
@@ -46,7 +46,7 @@ SemanticOcTree::Belief SemanticOcTree::belief(const Node& leaf) const {
 
 std::vector<double> SemanticOcTree::distribution(const Node& node) const {
   std::vector<double> p(numClasses() + 1, 0.0), scratch(p.size());
-  const double known = addMixture(*this, node, 1.0, p, scratch);
+  const double known = addMixture(*this, m_filter, node, 1.0, p, scratch);
   for (double& x : p) x /= known;
   return p;
 }

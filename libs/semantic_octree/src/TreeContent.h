@@ -144,12 +144,13 @@ class CheckedReader {
 };
 
 /** A map's bytes: kMagic, kVersion, then in checked blocks
- *   resolution (double), pruning (1 byte), filter (1 byte that is 0, nine doubles),
+ *   resolution (double), pruning (1 byte), filter (1 byte: whether classes have factors, nine
+ * doubles),
  *   classes: number (1 byte), each name (2 bytes length, characters), r, g, b,
  *            policy for unknown raw ids (1 byte), folds (4 bytes number; raw id 4 bytes, class 1
  * byte),
  *   half-lives of free space and of each class (doubles, seconds; 0: none), the map's clock (8
- *   bytes, nanoseconds),
+ *   bytes, nanoseconds), factors of classes if there are any (doubles),
  * number of nodes (8 bytes; 0: the map is empty), the root's NodeKind (1 byte) and value,
  * then from each inner node on, depth first: two bits of NodeKind per child (2 bytes), the leaves'
  * values, the inner children. The value of a leaf is its log-odds; with a class record, followed by

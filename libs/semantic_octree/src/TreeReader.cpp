@@ -52,11 +52,13 @@ class TreeReader {
   SemanticOcTree getHeader() {
     const auto resolution = m_in.get<double>();
     const bool pruning = getUpTo(1, "pruning");
-    getUpTo(0, "increments");
+    const bool hasFactors = getUpTo(1, "factors of classes");
     FilterParameters parameters;
     for (double* x : numbersOf(parameters)) *x = m_in.get<double>();
     ClassTable classes = getClasses();
     const std::int64_t clock = getTime(classes);
+    if (hasFactors) parameters.calibration.factors.resize(static_cast<std::size_t>(classes.size()));
+    for (double& x : parameters.calibration.factors) x = m_in.get<double>();
     SemanticOcTree tree(resolution, std::move(classes), parameters);
     tree.setPruning(pruning);
     MapAccess::setClock(tree, clock);

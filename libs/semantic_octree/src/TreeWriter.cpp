@@ -35,10 +35,12 @@ class TreeWriter {
   void putHeader() {
     m_out.put(m_tree.getResolution());
     m_out.put(m_tree.pruning());
-    m_out.put(std::uint8_t{0});  // kept free
+    const std::vector<double>& factors = m_tree.filterParameters().calibration.factors;
+    m_out.put(static_cast<std::uint8_t>(!factors.empty()));
     for (const double* x : numbersOf(m_tree.filterParameters())) m_out.put(*x);
     putClasses(m_tree.classes());
     putTime();
+    for (const double x : factors) m_out.put(x);
   }
 
   void putClasses(const ClassTable& classes) {

@@ -4,13 +4,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 namespace semantic_octree {
-
-class LabelProcess;
 
 /** Finds out what labels are worth, from labels alone, and fits what a map states to it.
  *
@@ -39,7 +38,10 @@ class Calibrator {
 
   /** What makes -sum_k q_k ln(stated p(class k | occupied)) least over the voxels, q_k what their
    * labels say, each counting by its points. What the map has counts like 100 labels; labels count
-   * from the third of a voxel on, for fewer cannot outvote each other. In steps of 1/256. */
+   * from the third of a voxel on, for fewer cannot outvote each other. Power and share are in steps
+   * of 1/256. Classes get factors where labels err: where the first two labels of more than one
+   * voxel in 25 differ, and no border of the two is beside. Not if the map was told how frequent
+   * classes are (FilterParameters::classPrior). */
   Calibration fit(const SemanticOcTree& map) const { return fitLater(map)(); }
   /** fit() in two parts: the map is read at once. The rest, which takes most of the time, is done
    * by whoever calls what is returned, in any thread. */
@@ -51,7 +53,10 @@ class Calibrator {
  private:
   bool keeps(std::uint64_t voxel) const;
   void keepFewer();
-  LabelProcess process(double accuracy, double labelsBefore) const;
+  /** Labels of the voxels that several scans saw. */
+  std::map<std::string, double> seenAgain() const;
+  /** Whether labels of a voxel differ more often than borders of right ones do. */
+  bool labelsErr(const SemanticOcTree& map) const;
 
   double m_voxelSize;
   int m_numClasses;

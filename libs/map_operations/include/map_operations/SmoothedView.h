@@ -35,7 +35,9 @@ struct SmoothingOptions {
  * over more than 3.2; below 1 it counts as 1. Voxels without a label tell nothing and have no
  * weight. No class falls farther behind the likeliest than the filter's limits let it in one voxel.
  * What is stated follows from g as the map's own follows from h, with the map's Calibration:
- * classes share what the voxel's own record names.
+ * classes share what the voxel's own record names. Where classes have factors, 2.2 takes the place
+ * of 3.2, and factors are raised to the root of W over the divisor: how frequent a class is counts
+ * once, for what its labels are taken counts with each voxel, and a factor is both.
  *
  * A sum is right if neighbors err by themselves (repeated = 0), a mean if they all err alike
  * (repeated = 1). The map tells which it is: who learns more believes, in the mean, what was

@@ -3,6 +3,7 @@
 #include <semantic_octree/FilterParameters.h>
 #include <semantic_octree/LabelEvidence.h>
 #include <semantic_octree/LabelReliability.h>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -69,8 +70,12 @@ class ClassFilter {
 
   /** Cell whose classes are equally likely, given its occupancy's log-odds. */
   Belief uniform(Real occupancyLogOdds) const;
-  /** What is stated of a cell's classes (see Calibration); its occupancy is the belief's. */
+  /** What is stated of a cell's classes (see Calibration); its occupancy is the belief's. With
+   * factors it names the likeliest classes, whether the belief names them or not. */
   Belief stated(const Belief& b) const;
+  /** The same as K + 1 probabilities, p[0] = free; with factors, of each class that is not named,
+   * too. */
+  void distribution(const Belief& b, double* p) const;
   /** Occupancy of a cell with a class record, ln(p(occupied) / p(free)); on the grid. */
   Real occupancyOf(const Belief& b) const;
   /** The log-odds that uniform() of a cell had, given its rest. */
@@ -93,6 +98,9 @@ class ClassFilter {
   }
 
  private:
+  Belief statedWithFactors(const Belief& b) const;
+  /** p(class k + 1 | occupied) as it is stated with factors. */
+  std::array<double, semantic_types::kMaxClasses> classesWithFactors(const Belief& b) const;
   void addToAll(Belief& b, Real increment) const;
   void hitOf(Belief& b, ClassId id, Real same, Real other) const;
   void hitOfSeveral(Belief& b, const ClassVotes* votes, std::size_t numVoted) const;

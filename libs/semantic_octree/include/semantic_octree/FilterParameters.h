@@ -8,16 +8,26 @@ namespace semantic_octree {
 /** How what a map states of a voxel's classes follows from what its filter believes of them: with
  * p_k the filter's p(class k | occupied), the map states
  *
- *   (1 - shared) p_k^power / sum_j p_j^power + shared u_k,
+ *   (1 - shared) w_k p_k^power / sum_j w_j p_j^power + shared u_k,
  *
  * u_k = 1 / n for the n classes that the voxel's record names and 0 for the others. A power below 1
  * says that labels err more often, or repeat each other more, than the filter takes them to, above
- * 1 less; what is shared, that voxels hold several classes. The order of classes stays. */
+ * 1 less; what is shared, that voxels hold several classes. A factor w_k below 1 says that a class
+ * is seldom what labels say it is, for it is rare, or others are taken for it (Alexandari et al.,
+ * "Maximum Likelihood with Bias-Corrected Calibration is Hard-To-Beat at Label Shift Adaptation",
+ * 2020). Without factors the order of classes stays. */
 struct Calibration {
+  static constexpr double kMostFactor = 65536;
+
   double power = 1;   ///< (0, 4]
   double shared = 0;  ///< [0, 1)
+  /** w_k of the classes 1 to K, 1/65536 to 65536; empty: all are 1. */
+  std::vector<double> factors = {};
 
-  bool isIdentity() const { return power == 1 && shared == 0; }
+  bool isIdentity() const { return power == 1 && shared == 0 && factors.empty(); }
+  bool operator==(const Calibration& o) const {
+    return power == o.power && shared == o.shared && factors == o.factors;
+  }
 };
 
 /** Sensor and classifier model of the class filter: log-likelihood ratios of these probabilities

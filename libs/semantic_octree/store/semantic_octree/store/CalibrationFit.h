@@ -52,12 +52,14 @@ class CalibrationFit {
   void add(const ClassBelief<float>& belief, const std::vector<double>& classes, double weight);
   bool empty() const { return m_questions.empty(); }
   /** What makes -sum weight sum_k p_k ln(stated p(class k | occupied)) least, p_k what cells are.
-   * \param calibration where the search begins; where nothing is shared, nothing will be */
+   * \param calibration where the search begins; where nothing is shared, or no class has a factor,
+   * nothing or none will */
   Calibration fit(Calibration calibration) const;
 
  private:
   struct Question {
-    int named, unnamed;              ///< how many classes
+    int named, unnamed;  ///< how many classes
+    std::array<ClassId, 3> ids;
     std::array<double, 4> ahead{};   ///< log-odds of the named less the largest; last: of others
     std::array<double, 4> target{};  ///< p(class), last: of all others together
     double weight;
@@ -65,6 +67,7 @@ class CalibrationFit {
   struct Step;
 
   std::vector<Question> m_questions;
+  std::vector<double> m_unnamed;  ///< of each class, what cells are that do not name it
 };
 
 }  // namespace semantic_octree
