@@ -180,6 +180,19 @@ TEST(Planar, odometryThatStandsStillWhileTheRobotDrivesIsNoticed) {
       << warningsOf(r);
 }
 
+TEST(Planar, aRobotThatIsTurnedWhereItStandsIsNotLost) {
+  Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
+  const std::size_t half = r.odometry.size() / 2;
+  const Eigen::Isometry3d T_turned = r.odometry[half - 1] *
+                                     Eigen::AngleAxisd(-80 * M_PI / 180, Eigen::Vector3d::UnitZ()) *
+                                     r.odometry[half].inverse();
+  for (std::size_t i = half; i < r.odometry.size(); ++i) r.odometry[i] = T_turned * r.odometry[i];
+  Slam slam({});
+  addAll(slam, r, kRobotLaser);
+  EXPECT_EQ(slam.report().lost, 0u);
+  EXPECT_LT(errorsOf(slam.poses(), r).rootMeanSquare, 0.06);
+}
+
 TEST(Planar, aRobotThatWasCarriedIsFoundAgain) {
   const Recording whole = recordingOf("village", 1, laserOf(), 120, kFlat);
   Recording r = whole;

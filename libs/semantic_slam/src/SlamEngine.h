@@ -186,6 +186,7 @@ class SlamEngine {
   int m_numSmall = 0;                          ///< small steps since the last registration
   double m_wayOfOdometry = 0, m_wayOfScans = 0, m_turnOfOdometry = 0, m_turnOfScans = 0;
   double m_lastLook = 0, m_lastReferenced = 0;                ///< m of the way
+  double m_lastWholeLook = 0;                                 ///< when all of a window was searched
   double m_lostWay = 0;                                       ///< m where scans fit nothing
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;  ///< they may be wrong
   bool m_isOptimized = true;

@@ -14,9 +14,11 @@ constexpr double kLoopMeters = 0.03, kLoopAngle = 0.1 * kDegree;
 constexpr double kCoarsest = 8;
 /** Looks for loops are so many keyframe distances apart. */
 constexpr double kLookEvery = 2;
-/** Window of a search: at first, in cells of the grid; per meter of the way since the last loop; at
- * most, in cells of the grid. */
-constexpr double kWindow = 10, kWindowDrift = 0.03, kLargestWindow = 100;
+/** Window of a search: at first, in cells of the grid; per meter of the way since the last loop; in
+ * the one around where the robot seems to be at most, in cells of the grid. Only if it is nowhere
+ * there all of the window is searched, each time that the robot went this share of it: that takes
+ * long, and more is alike in it. */
+constexpr double kWindow = 10, kWindowDrift = 0.03, kNearWindow = 100, kLookShare = 1.0 / 8;
 constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngle = 45 * kDegree;
 /** Without registration the robot may be off as after so many times the way more. */
 constexpr double kLostMore = 9;
@@ -128,23 +130,13 @@ bool SlamEngine::closeLoops() {
 }
 
 PlaneSearch::Window SlamEngine::windowAfter(double way) const {
-  return {
-      std::min(kWindow * m_scale.gridCell + kWindowDrift * way, kLargestWindow * m_scale.gridCell),
-      std::min(kAngle + kAngleDrift * way, kLargestAngle)};
+  return {kWindow * m_scale.gridCell + kWindowDrift * way,
+          std::min(kAngle + kAngleDrift * way, kLargestAngle)};
 }
 
 std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way) {
   const std::size_t newest = m_keyframes.size() - 1;
-  const PlaneSearch::Window window = windowAfter(way);
-  // Wherever the robot is in the window, all that it sees was seen from these keyframes.
-  const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
-                                              window.radius / m_scale.keyframeDistance);
-  const std::size_t end = m_piece && place < *m_piece ? *m_piece : newest;
-  const std::size_t first = place - std::min(place, reach);
-  std::size_t last = place;
-  while (last < place + reach && last + 1 < end &&
-         m_keyframes[newest].way - m_keyframes[last + 1].way > m_scale.loopLength / 2)
-    ++last;
+  const double wayNow = m_keyframes[newest].way;
   const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
   // Seen from above, height and tilt aside.
   const Eigen::Vector3d guess = flatOf(T_guess);
@@ -152,8 +144,29 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   Seen level = stretch;
   const Eigen::Matrix3f T_level = (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
   for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
-  const auto found = PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
-                         .find(upright(level.cloud), guess, window, kLeastScore);
+
+  PlaneSearch::Window window = windowAfter(way);
+  const double whole = window.radius;
+  window.radius = std::min(whole, kNearWindow * m_scale.gridCell);
+  std::size_t first = 0, last = 0;
+  std::optional<PlaneSearch::Found> found;
+  while (true) {
+    // Wherever the robot is in the window, all that it sees was seen from these keyframes.
+    const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
+                                                window.radius / m_scale.keyframeDistance);
+    const std::size_t end = m_piece && place < *m_piece ? *m_piece : newest;
+    first = place - std::min(place, reach);
+    last = place;
+    while (last < place + reach && last + 1 < end &&
+           wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
+      ++last;
+    found = PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
+                .find(upright(level.cloud), guess, window, kLeastScore);
+    const bool isTime = wayNow == m_lastWholeLook || wayNow > m_lastWholeLook + kLookShare * whole;
+    if (found || window.radius == whole || !isTime) break;
+    window.radius = whole;
+    m_lastWholeLook = wayNow;
+  }
   if (!found) return std::nullopt;
   const double off = (found->pose - guess).head<2>().norm();
   if (found->score < kMovingScore && off > kWindow * m_scale.gridCell) return std::nullopt;

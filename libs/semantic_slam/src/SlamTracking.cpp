@@ -340,14 +340,18 @@ std::optional<Registration> SlamEngine::searchAround(const Seen& seen, const Pos
     for (const Eigen::Vector2d& p : upright(moved(seenAt(k).cloud, T))) points.push_back(p);
   }
   const Pose T_level = planar(T_local_guess).inverse() * T_local_guess;
-  const auto found = PlaneSearch(points, m_scale.gridCell)
-                         .find(upright(moved(seen.cloud, T_level)), flatOf(planar(T_local_guess)),
-                               window, kTrackedScore);
-  if (!found) return std::nullopt;
-  const Registration r =
-      match(m_local.submaps(), seen, poseOfFlat(found->pose) * T_level, Matrix6::Zero());
-  if (!isCovered(r, seen) || r.matchedShare < kFitsWell) return std::nullopt;
-  return r;
+  const PlaneSearch search(points, m_scale.gridCell);
+  const PlanePoints searched = upright(moved(seen.cloud, T_level));
+  // Wheels turn without moving the robot, or it is turned by hand: then it is nowhere else.
+  for (const double angle : {window.angle, M_PI}) {
+    const auto found =
+        search.find(searched, flatOf(planar(T_local_guess)), {window.radius, angle}, kTrackedScore);
+    if (!found || (angle > window.angle && !found->isAlone)) continue;
+    const Registration r =
+        match(m_local.submaps(), seen, poseOfFlat(found->pose) * T_level, Matrix6::Zero());
+    if (isCovered(r, seen) && r.matchedShare >= kFitsWell) return r;
+  }
+  return std::nullopt;
 }
 
 void SlamEngine::learn(const Pose& T_step, const Registration& registered) {
