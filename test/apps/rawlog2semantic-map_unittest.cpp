@@ -236,7 +236,7 @@ TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
                                kProgram, "--live", "--pause", "-v"},
                               arguments("live"),
                               {"--", "140 53 inserted", "140 53 inserted",
-                               "picture " + path("screen.png"), "25 53 CSemanticOctoMap"})));
+                               "picture " + path("screen.png"), "25 53 voxels of"})));
   const cv::Mat screen = cv::imread(path("screen.png"));
   ASSERT_FALSE(screen.empty());
   int road = 0, car = 0;

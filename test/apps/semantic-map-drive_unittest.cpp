@@ -80,7 +80,7 @@ TEST_F(SemanticMapDrive, WritesARawlogThatBecomesAMap) {
 }
 
 TEST_F(SemanticMapDrive, LogsWhatMrptsNavigatorDid) {
-  ASSERT_EQ(drive({"--no-rawlog", "--navlog", "--person", "0,-9.5,-18.6,-9.5,-18.6"}).status, 0);
+  ASSERT_EQ(drive({"--no-rawlog", "--navlog", "--person", "0,-5,-17,-13,-18.7"}).status, 0);
   EXPECT_EQ(jsonIn("drive/drive.json")["collisions"], 0);
   CompressedInput file(path("drive/drive.reactivenavlog"));
   auto archive = mrpt::serialization::archiveFrom(file);
