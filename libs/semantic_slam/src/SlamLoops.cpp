@@ -145,12 +145,8 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   const Eigen::Matrix3f T_level = (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
   for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
 
-  PlaneSearch::Window window = windowAfter(way);
-  const double whole = window.radius;
-  window.radius = std::min(whole, kNearWindow * m_scale.gridCell);
   std::size_t first = 0, last = 0;
-  std::optional<PlaneSearch::Found> found;
-  while (true) {
+  const auto lookWithin = [&](const PlaneSearch::Window& window) {
     // Wherever the robot is in the window, all that it sees was seen from these keyframes.
     const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
                                                 window.radius / m_scale.keyframeDistance);
@@ -160,12 +156,16 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
     while (last < place + reach && last + 1 < end &&
            wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
       ++last;
-    found = PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
-                .find(upright(level.cloud), guess, window, kLeastScore);
-    const bool isTime = wayNow == m_lastWholeLook || wayNow > m_lastWholeLook + kLookShare * whole;
-    if (found || window.radius == whole || !isTime) break;
-    window.radius = whole;
+    return PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
+        .find(upright(level.cloud), guess, window, kLeastScore);
+  };
+  const PlaneSearch::Window whole = windowAfter(way);
+  const double near = kNearWindow * m_scale.gridCell;
+  auto found = lookWithin({std::min(whole.radius, near), whole.angle});
+  if (!found && whole.radius > near &&
+      (wayNow == m_lastWholeLook || wayNow > m_lastWholeLook + kLookShare * whole.radius)) {
     m_lastWholeLook = wayNow;
+    found = lookWithin(whole);
   }
   if (!found) return std::nullopt;
   const double off = (found->pose - guess).head<2>().norm();
