@@ -38,8 +38,7 @@ struct ExploreTrial {
   mrpt::math::TPose2D start;
   std::vector<KnownShare> known;
   std::string end;  ///< why it is over
-  int decisions = 0, unreached = 0, collisions = 0;
-  double secondsOfChoices = 0;  ///< of the processor
+  int collisions = 0;
   std::vector<mrpt::math::TPose2D> track;
 
   double meters() const { return known.empty() ? 0 : known.back().meters; }
@@ -56,7 +55,5 @@ ExploreTrial explore(const simulated_drive::DriveConfig& config,
 
 /** A line for each look: how much of the relevant ground was known after so many meters. */
 std::string toCsv(const std::vector<ExploreTrial>& trials);
-/** A table of strategies: medians of the meters to 50, 80 and 90 %, and how many came so far. */
-std::string toMarkdown(const std::vector<ExploreTrial>& trials);
 
 }  // namespace drive_study

@@ -20,14 +20,13 @@ namespace fs = std::filesystem;
 
 constexpr int kFaults = 2;              // exit status
 constexpr double kStartsWithin = 0.84;  // of how far exploring goes from the world's middle
-const std::vector<std::string> kFiles = {"study.csv", "exploration.csv", "exploration.md"};
+const std::vector<std::string> kFiles = {"study.csv", "exploration.csv"};
 
 struct Cli {
   fs::path order, config, output, weights;
   std::string solution;
   std::vector<std::string> scenes = synthetic_world::sceneNames();
   int pairs = 20;
-  std::vector<int> only;
   bool explore = false;
   std::uint64_t sceneSeed = 1;
   TaskOptions tasks;
@@ -40,8 +39,6 @@ struct Cli {
         ->default_str("all");
     addNumber(app, "--pairs", pairs, strict_files::atLeast(0),
               "Drives in each world, from a random start to a random goal");
-    app.add_option("--only", only, "Numbers of the drives to do (0, 1, ...); without: all")
-        ->delimiter(',');
     CLI::Option* exploring =
         app.add_flag("--explore", explore, "Look around from the starts instead, by each strategy");
     CLI::Option* file =
@@ -57,9 +54,6 @@ struct Cli {
     app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
         ->required();
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
-  }
-  bool wants(int number) const {
-    return only.empty() || std::find(only.begin(), only.end(), number) != only.end();
   }
 };
 
@@ -82,7 +76,6 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
   for (int i = 0; i < cli.pairs && !stop.pending(); ++i) {
     Task task = draw.next();
     while (!oracle.accepts(task)) task = draw.next();
-    if (!cli.wants(i)) continue;
     oracle.solve(task);
     simulated_drive::DriveConfig itsOwn = config;
     itsOwn.sensors.seed = cli.tasks.seed + static_cast<std::uint64_t>(i);
@@ -129,7 +122,7 @@ void exploreScene(const std::string& name, const Cli& cli,
            !oracle.accepts(drawn));
     const mrpt::math::TPose2D& start = drawn.start;
     for (const auto& [strategy, how] : choicesOf(Exploring())) {
-      if (stop.pending() || !cli.wants(i)) continue;
+      if (stop.pending()) continue;
       simulated_drive::DriveConfig itsOwn = config;
       itsOwn.sensors.seed = cli.tasks.seed + static_cast<std::uint64_t>(i);
       trials.push_back(explore(itsOwn, scene, order, task, start, how));
@@ -145,7 +138,6 @@ int runExploring(const Cli& cli, const simulated_drive::DriveConfig& config,
   std::vector<ExploreTrial> trials;
   for (const std::string& scene : cli.scenes) exploreScene(scene, cli, config, stop, trials);
   strict_files::writeText(output.staged("exploration.csv"), toCsv(trials));
-  strict_files::writeText(output.staged("exploration.md"), toMarkdown(trials));
   output.commit(kFiles);
   const bool touched = std::any_of(trials.begin(), trials.end(),
                                    [](const ExploreTrial& t) { return t.collisions > 0; });
