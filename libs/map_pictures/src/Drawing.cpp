@@ -48,7 +48,7 @@ std::vector<char32_t> charactersOf(const std::string& text) {
   return characters;
 }
 
-/** Draws what OpenCV's own font has no letters for. */
+/** Writes in DejaVu Sans. */
 class DejaVu {
  public:
   /** Nothing if the font is not installed. */
@@ -129,26 +129,18 @@ void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const
   draw(arrow.color, 0);
 }
 
-Font fontFor(const std::string& text) {
-  const auto isAscii = [](unsigned char c) { return c < 0x80; };
-  return std::all_of(text.begin(), text.end(), isAscii) ? Font::Strokes : Font::DejaVu;
-}
-
-int textWidth(const std::string& text, Font font) {
-  if (font == Font::DejaVu)
-    if (const auto letters = DejaVu::load()) return letters->write(nullptr, text, {});
+int textWidth(const std::string& text) {
+  if (const auto letters = DejaVu::load()) return letters->write(nullptr, text, {});
   int baseline = 0;
   return cv::getTextSize(text, kFont, kTextSize, 1, &baseline).width;
 }
 
-void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle, Font font) {
+void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle) {
   const cv::Point baseline = leftMiddle + cv::Point(0, 6);
-  if (font == Font::DejaVu)
-    if (const auto letters = DejaVu::load()) {
-      letters->write(&picture, text, baseline);
-      return;
-    }
-  cv::putText(picture, text, baseline, kFont, kTextSize, bgr(kInk), 1, cv::LINE_AA);
+  if (const auto letters = DejaVu::load())
+    letters->write(&picture, text, baseline);
+  else
+    cv::putText(picture, text, baseline, kFont, kTextSize, bgr(kInk), 1, cv::LINE_AA);
 }
 
 using semantic_types::ClassId;
@@ -253,23 +245,19 @@ cv::Mat withLegend(const cv::Mat& picture, const std::string& title,
   const int top = title.empty() ? kMargin : kMargin + kRow, numEntries = int(entries.size());
   const int rows = std::max(kFewestRows, (picture.rows - top - kMargin) / kRow);
   const int columns = std::max(1, (numEntries + rows - 1) / rows);
-  const Font font = fontFor(std::accumulate(
-      entries.begin(), entries.end(), title,
-      [](const std::string& text, const LegendEntry& entry) { return text + entry.name; }));
   int width = 0;
-  for (const auto& entry : entries)
-    width = std::max(width, kTextLeft + textWidth(entry.name, font));
+  for (const auto& entry : entries) width = std::max(width, kTextLeft + textWidth(entry.name));
 
   const int left = picture.cols + kMargin;
-  const int inside = std::max(textWidth(title, font), columns * (width + kMargin) - kMargin);
+  const int inside = std::max(textWidth(title), columns * (width + kMargin) - kMargin);
   const int height = std::max(picture.rows, top + std::min(rows, numEntries) * kRow + kMargin);
   cv::Mat sheet(height, left + inside + kMargin, CV_8UC3, bgr(kPaper));
   picture.copyTo(sheet(cv::Rect({0, 0}, picture.size())));
-  if (!title.empty()) writeText(sheet, title, {left, kMargin + kRow / 4}, font);
+  if (!title.empty()) writeText(sheet, title, {left, kMargin + kRow / 4});
   for (int i = 0; i < numEntries; ++i) {
     const cv::Point at(left + i / rows * (width + kMargin), top + i % rows * kRow);
     std::visit(Sample{sheet, {at, cv::Size(kSwatch, kSwatch)}}, entries[i].look);
-    writeText(sheet, entries[i].name, at + cv::Point(kTextLeft, kSwatch / 2), font);
+    writeText(sheet, entries[i].name, at + cv::Point(kTextLeft, kSwatch / 2));
   }
   return sheet;
 }
@@ -278,7 +266,7 @@ cv::Mat withTitle(const cv::Mat& picture, const std::string& title) {
   constexpr int kHeight = 34;
   cv::Mat sheet;
   cv::copyMakeBorder(picture, sheet, kHeight, 0, 0, 0, cv::BORDER_CONSTANT, bgr(kPaper));
-  writeText(sheet, title, {kMargin, kHeight / 2}, fontFor(title));
+  writeText(sheet, title, {kMargin, kHeight / 2});
   return sheet;
 }
 
@@ -286,7 +274,7 @@ void drawScaleBar(cv::Mat& picture, double pixelsPerMeter, const cv::Rect& taken
   const double meters = roundLength(picture.cols / pixelsPerMeter / 5);
   const int length = std::max(1, int(std::lround(meters * pixelsPerMeter)));
   const std::string text = lengthName(meters);
-  const int width = std::max(length, textWidth(text, Font::Strokes));
+  const int width = std::max(length, textWidth(text));
   const cv::Size size(width + 2 * kMargin, 2 * kRow + 4);
   const cv::Point corner = emptiestCorner(picture, size, taken);
   brighten(picture, {corner, size});
@@ -294,8 +282,7 @@ void drawScaleBar(cv::Mat& picture, double pixelsPerMeter, const cv::Rect& taken
   cv::rectangle(picture, {left.x, left.y - 4, length, 4}, bgr(kInk), cv::FILLED);
   for (const int x : {left.x, left.x + length - 2})
     cv::rectangle(picture, {x, left.y - 9, 2, 9}, bgr(kInk), cv::FILLED);
-  writeText(picture, text, {left.x + (length - textWidth(text, Font::Strokes)) / 2, left.y - 20},
-            Font::Strokes);
+  writeText(picture, text, {left.x + (length - textWidth(text)) / 2, left.y - 20});
 }
 
 cv::Rect drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions) {
@@ -312,8 +299,7 @@ cv::Rect drawAxes(cv::Mat& picture, const std::array<cv::Point2d, 3>& directions
     const cv::Point2d tip = origin + kLength * directions[axis];
     const cv::Point2d letter = origin + (kLength + 11) * directions[axis];
     cv::arrowedLine(picture, origin, tip, colors[axis], 2, cv::LINE_AA, 0, 0.2);
-    writeText(picture, std::string(1, char('x' + axis)), cv::Point(letter) - cv::Point(5, 0),
-              Font::Strokes);
+    writeText(picture, std::string(1, char('x' + axis)), cv::Point(letter) - cv::Point(5, 0));
   }
   return place;
 }

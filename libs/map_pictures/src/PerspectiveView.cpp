@@ -104,110 +104,56 @@ const std::array<Face, 6> kFaces = {{{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 1.0f},
                                      {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, 0.66f},
                                      {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}, 0.66f}}};
 
-/** Which of the 26 places around a cell, of its size, are filled. */
-class Neighborhood {
- public:
-  Neighborhood(const SemanticOcTree& tree, const MapCells& map, const MapCell& cell)
-      : m_tree(tree), m_map(map), m_cell(cell) {}
-
-  bool isFilled(const Eigen::Vector3i& step) {
-    State& state = m_states[(step.x() + 1) * 9 + (step.y() + 1) * 3 + step.z() + 1];
-    if (state == State::NotAsked) state = lookUp(step) ? State::Filled : State::Empty;
-    return state == State::Filled;
+/** Whether the place beside a cell, of its size, is filled. */
+bool isFilled(const SemanticOcTree& tree, const MapCells& map, const MapCell& cell,
+              const Eigen::Vector3i& step) {
+  if (map.isCutOff(cell.center + step.cast<float>() * cell.size)) return false;
+  octomap::OcTreeKey key;
+  const int keys = 1 << (tree.getTreeDepth() - cell.depth);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int k = cell.key[axis] + step[axis] * keys;
+    if (k < 0 || k > 0xffff) return false;
+    key[axis] = static_cast<octomap::key_type>(k);
   }
-
- private:
-  enum class State : std::uint8_t { NotAsked, Empty, Filled };
-
-  bool lookUp(const Eigen::Vector3i& step) const {
-    if (m_map.isCutOff(m_cell.center + step.cast<float>() * m_cell.size)) return false;
-    octomap::OcTreeKey key;
-    const int keys = 1 << (m_tree.getTreeDepth() - m_cell.depth);
-    for (int axis = 0; axis < 3; ++axis) {
-      const int k = m_cell.key[axis] + step[axis] * keys;
-      if (k < 0 || k > 0xffff) return false;
-      key[axis] = static_cast<octomap::key_type>(k);
-    }
-    const auto node = m_tree.search(key, m_cell.depth);
-    return node && node->getOccupancy() > MapCells::kOccupied &&
-           (node->isLeaf() || m_cell.depth == m_map.depth);
-  }
-
-  const SemanticOcTree& m_tree;
-  const MapCells& m_map;
-  const MapCell& m_cell;
-  std::array<State, 27> m_states{};
-};
-
-/** 0 (dark) to 3: how open the corner (su, sv) of a face is. */
-int openness(Neighborhood& around, const Face& face, int su, int sv) {
-  const bool a = around.isFilled(face.normal + su * face.u);
-  const bool b = around.isFilled(face.normal + sv * face.v);
-  if (a && b) return 0;
-  return 3 - int(a) - int(b) - int(around.isFilled(face.normal + su * face.u + sv * face.v));
+  const auto node = tree.search(key, cell.depth);
+  return node && node->getOccupancy() > MapCells::kOccupied &&
+         (node->isLeaf() || cell.depth == map.depth);
 }
 
-class MeshBuilder {
- public:
-  explicit MeshBuilder(const semantic_types::ClassTable& classes) : m_classes(classes) {}
-
-  void addFace(const MapCell& cell, const Face& face, Neighborhood& around) {
-    // Corners in the order that turns to the left seen from outside.
-    constexpr std::array<std::array<int, 2>, 4> kCorners = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-    std::array<TTriangle::Vertex, 4> corners;
-    std::array<int, 4> open;
-    for (int i = 0; i < 4; ++i) {
-      const auto [su, sv] = kCorners[i];
-      open[i] = openness(around, face, su, sv);
-      const Eigen::Vector3f p =
-          cell.center + cell.size / 2 * (face.normal + su * face.u + sv * face.v).cast<float>();
-      corners[i] = vertex(p, face, cell.id, face.brightness * (0.55f + 0.15f * float(open[i])));
-    }
-    // The diagonal that keeps the shade of a corner from crossing the face.
-    const int first = open[0] + open[2] >= open[1] + open[3] ? 0 : 1;
-    for (const int second : {first + 1, first + 2}) {
-      TTriangle triangle;
-      triangle.vertices = {corners[first], corners[second], corners[(second + 1) % 4]};
-      m_triangles.push_back(triangle);
-    }
+/** Two triangles, in a class's color with light from above. */
+void addFace(const MapCell& cell, const Face& face, const Color& color, CSetOfTriangles& mesh) {
+  const auto shade = [&face](std::uint8_t x) {
+    return static_cast<std::uint8_t>(float(x) * face.brightness + 0.5f);
+  };
+  // Corners in the order that turns to the left seen from outside.
+  constexpr std::array<std::array<int, 2>, 4> kCorners = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  std::array<TTriangle::Vertex, 4> corners;
+  for (int i = 0; i < 4; ++i) {
+    const auto [su, sv] = kCorners[i];
+    const Eigen::Vector3f p =
+        cell.center + cell.size / 2 * (face.normal + su * face.u + sv * face.v).cast<float>();
+    corners[i].xyzrgba.pt = {p.x(), p.y(), p.z()};
+    corners[i].normal = {float(face.normal.x()), float(face.normal.y()), float(face.normal.z())};
+    corners[i].setColor({shade(color.r), shade(color.g), shade(color.b), 255});
   }
-
-  CSetOfTriangles::Ptr take() const {
-    const auto mesh = CSetOfTriangles::Create();
-    mesh->insertTriangles(m_triangles);
-    mesh->enableLight(false);  // the colors are lit already
-    mesh->cullFaces(mrpt_compat::drawing::TCullFace::NONE);
-    return mesh;
+  for (const int second : {1, 2}) {
+    TTriangle triangle;
+    triangle.vertices = {corners[0], corners[second], corners[second + 1]};
+    mesh.insertTriangle(triangle);
   }
-
- private:
-  TTriangle::Vertex vertex(const Eigen::Vector3f& p, const Face& face, semantic_types::ClassId id,
-                           float brightness) const {
-    TTriangle::Vertex v;
-    v.xyzrgba.pt = {p.x(), p.y(), p.z()};
-    v.normal = {float(face.normal.x()), float(face.normal.y()), float(face.normal.z())};
-    const auto c = colorOf(id, m_classes);
-    const auto shade = [brightness](std::uint8_t x) {
-      return static_cast<std::uint8_t>(float(x) * brightness + 0.5f);
-    };
-    v.setColor({shade(c.r), shade(c.g), shade(c.b), 255});
-    return v;
-  }
-
-  const semantic_types::ClassTable& m_classes;
-  std::vector<TTriangle> m_triangles;
-};
+}
 
 /** The faces of a map's cells that are not hidden by a neighbor (map frame, m), in the classes'
- * colors (gray: none), with light from above, corners and creases darker. */
+ * colors (gray: none). */
 CSetOfTriangles::Ptr meshOf(const SemanticOcTree& tree, const MapCells& map) {
-  MeshBuilder mesh(tree.classes());
-  for (const MapCell& cell : map.cells) {
-    Neighborhood around(tree, map, cell);
+  const auto mesh = CSetOfTriangles::Create();
+  for (const MapCell& cell : map.cells)
     for (const Face& face : kFaces)
-      if (!around.isFilled(face.normal)) mesh.addFace(cell, face, around);
-  }
-  return mesh.take();
+      if (!isFilled(tree, map, cell, face.normal))
+        addFace(cell, face, colorOf(cell.id, tree.classes()), *mesh);
+  mesh->enableLight(false);  // the colors are lit already
+  mesh->cullFaces(mrpt_compat::drawing::TCullFace::NONE);
+  return mesh;
 }
 
 /** What the renderer gives back. */

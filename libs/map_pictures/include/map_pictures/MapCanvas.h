@@ -50,18 +50,12 @@ void drawLine(cv::Mat& picture, const std::vector<cv::Point2d>& points, const St
 /** \param heading radians, counterclockwise from the right */
 void drawArrow(cv::Mat& picture, const cv::Point2d& place, double heading, const Arrow& arrow);
 
-/** OpenCV's own letters, made of strokes, are those of ASCII; others need DejaVu Sans. */
-enum class Font { Strokes, DejaVu };
-
-/** A font that has all letters of a UTF-8 text. Texts that stand together should share it. */
-Font fontFor(const std::string& text);
-
 /** Pixels. */
-int textWidth(const std::string& text, Font font);
+int textWidth(const std::string& text);
 
-/** \param leftMiddle of the text. Where DejaVu Sans is not installed, "?" stands for its letters.
- */
-void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle, Font font);
+/** In DejaVu Sans; where it is not installed in OpenCV's own letters, which are those of ASCII.
+ * \param text UTF-8 \param leftMiddle of the text */
+void writeText(cv::Mat& picture, const std::string& text, const cv::Point& leftMiddle);
 
 /** How coarse cells are drawn: stripes in a color and a paler one. */
 struct Hatch {
