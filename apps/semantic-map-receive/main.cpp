@@ -6,9 +6,9 @@
 #include <chrono>
 #include <filesystem>
 #include <ostream>
+#include <random>
 
 #include "Application.h"
-#include "inputs/Inputs.h"
 #include "radio/Radio.h"
 
 namespace semantic_map_receive {
@@ -16,13 +16,10 @@ namespace {
 using std::chrono::milliseconds;
 
 namespace fs = std::filesystem;
-using semantic_octree::SemanticOcTree;
 
 struct ReceptionOptions {
   double timeout = 60;    ///< seconds without a word from the sender
   std::size_t bytes = 0;  ///< enough, see semantic_octree::StreamPrefix; 0: all
-  double loss = 0;        ///< see radio::BadRadio
-  unsigned seed = 2;
 };
 
 /** The silence before a request or a receipt goes out again. */
@@ -44,25 +41,17 @@ class Reception {
         m_cookie(radio::Cookies::kBytes, '\0'),
         m_wish(wish.packed()),
         m_socket(0),
-        m_radio(m_socket, options.loss, options.seed),
         m_receiver(m_stream),
         m_lastHeard(Clock::now()),
         m_lastSent(m_lastHeard - std::chrono::hours(1)) {}
 
   /** Until it is there, or enough of it, or the user stops it.
-   * \param check is called with the empty map once it is known which classes it has
    * \throw std::runtime_error the sender is not there, refuses, or falls silent; what came is in
    * receiver() nevertheless. */
-  template <typename Check>
-  void receive(const StopRequest& stop, const Check& check) {
-    bool isChecked = false;
+  void receive(const StopRequest& stop) {
     while (!stop.pending() && !m_isEnded && !isEnough()) {
       ask();
       listen(std::chrono::milliseconds(50));
-      if (!isChecked && m_receiver.hasMap()) {
-        check(m_receiver.map());
-        isChecked = true;
-      }
       if (Clock::now() - m_lastHeard > std::chrono::duration<double>(m_options.timeout))
         failSilent();
     }
@@ -125,7 +114,7 @@ class Reception {
     m_numUnacknowledged = 0;
     m_lastSent = Clock::now();
   }
-  void send(const Datagram& datagram) { m_radio.send(m_sender, m_seal.sealed(datagram.bytes())); }
+  void send(const Datagram& datagram) { m_socket.send(m_sender, m_seal.sealed(datagram.bytes())); }
   [[noreturn]] void failSilent() const {
     if (m_receiver.numExpected() == 0)
       throw std::runtime_error("nobody answers at " + m_sender.text());
@@ -140,7 +129,6 @@ class Reception {
   std::uint32_t m_stream;
   std::string m_cookie, m_wish;  ///< of a request
   radio::UdpSocket m_socket;
-  radio::BadRadio m_radio;
   semantic_octree::MapReceiver m_receiver;
   bool m_isEnded = false;
   std::size_t m_numUnacknowledged = 0;
@@ -149,7 +137,7 @@ class Reception {
 
 struct Cli {
   std::string sender;
-  fs::path output, weights, like, key;
+  fs::path output, weights, key;
   radio::Wish wish;
   ReceptionOptions reception;
   Outputs outputs;
@@ -168,16 +156,12 @@ struct Cli {
     app.add_option("--bytes", reception.bytes,
                    "End when the first so many bytes of the map are there, without a gap")
         ->check(isNumber(strict_files::above(0)));
-    app.add_option("--like", like, "Refuse a map whose classes or voxels differ from this map's");
     app.add_option(
         "--key", key,
         "Listen only to a sender with this key: a file of 16 bytes or more, the same on both "
         "sides");
     addNumber(app, "--timeout", reception.timeout, strict_files::above(0),
               "End when the sender is silent for this long, s");
-    addNumber(app, "--lose", reception.loss, strict_files::between(0, 0.99),
-              "Try a bad radio: lose this share of what goes to the sender");
-    app.add_option("--seed", reception.seed, "Seed of the losses")->capture_default_str();
     app.add_flag_callback("-v,--verbose", beVerbose,
                           "Report datagrams that do not belong to the session");
   }
@@ -195,15 +179,6 @@ radio::Peer peerOf(const std::string& text) {
   return radio::Peer::of(text.substr(0, colon), std::stoi(port));
 }
 
-/** \throw std::runtime_error maps of this kind cannot be shared with that file's. */
-void checkKind(const SemanticOcTree& received, const SemanticOcTree& own, const fs::path& file) {
-  if (received.classes() != own.classes())
-    throw std::runtime_error("the sender's class table is not that of " + file.string());
-  if (received.getResolution() != own.getResolution())
-    throw std::runtime_error("the sender's voxels of " + std::to_string(received.getResolution()) +
-                             " m are not those of " + file.string());
-}
-
 void save(const Reception& reception, const fs::path& file) {
   const semantic_octree::MapReceiver& receiver = reception.receiver();
   if (!receiver.hasMap()) return;
@@ -215,19 +190,13 @@ void save(const Reception& reception, const fs::path& file) {
 int run(Cli& cli) {
   cli.outputs.check({cli.output});
   if (!cli.weights.empty()) cli.wish.weights = strict_files::readText(cli.weights);
-  std::optional<SemanticOcTree> own;
-  if (!cli.like.empty()) own = inputs::loadMap(cli.like);
   const StopRequest stop("after this packet");
   Reception reception(peerOf(cli.sender), cli.wish,
                       cli.key.empty() ? radio::Seal() : radio::Seal(cli.key), cli.reception);
-  bool isOurs = false;
   try {
-    reception.receive(stop, [&](const SemanticOcTree& map) {
-      if (own) checkKind(map, *own, cli.like);
-      isOurs = true;
-    });
+    reception.receive(stop);
   } catch (const std::runtime_error&) {
-    if (isOurs) save(reception, cli.output);
+    save(reception, cli.output);
     throw;
   }
   save(reception, cli.output);

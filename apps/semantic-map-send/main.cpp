@@ -123,8 +123,6 @@ struct StationOptions {
   double rate = 0;      ///< bits a second, with the headers of IP and UDP; 0: as fast as can be
   double timeout = 60;  ///< seconds
   std::size_t receivers = 1;
-  double loss = 0;  ///< see radio::BadRadio
-  unsigned seed = 1;
 };
 
 /** Serves receivers, several at once, at one rate for all of them. Nothing is kept of who asks
@@ -143,7 +141,6 @@ class Station {
         m_seal(seal),
         m_options(options),
         m_socket(options.port),
-        m_radio(m_socket, options.loss, options.seed),
         m_silence("nobody asked for the map at port " + std::to_string(port())),
         m_nextSending(Clock::now()),
         m_lastHeard(m_nextSending),
@@ -243,7 +240,7 @@ class Station {
   }
   void send(const radio::Peer& to, const Datagram& datagram) {
     const std::string bytes = m_seal.sealed(datagram.bytes());
-    m_radio.send(to, bytes);
+    m_socket.send(to, bytes);
     const double bits = 8.0 * static_cast<double>(bytes.size() + kHeaders);
     m_nextSending = std::max(m_nextSending, Clock::now() - kTick) +
                     std::chrono::duration_cast<Clock::duration>(
@@ -271,7 +268,6 @@ class Station {
   radio::Seal m_seal;
   StationOptions m_options;
   radio::UdpSocket m_socket;
-  radio::BadRadio m_radio;
   radio::Cookies m_cookies;
   std::list<Session> m_sessions;  ///< whose turn it is first
   /** To one who has no session, and whether the last datagram was such. */
@@ -311,9 +307,6 @@ struct Cli {
               "End after this many receivers; up to 16 are served at once, 4 of one address");
     addNumber(app, "--timeout", station.timeout, strict_files::above(0),
               "Forget a receiver that is silent for this long; end if none is left, s");
-    addNumber(app, "--lose", station.loss, strict_files::between(0, 0.99),
-              "Try a bad radio: lose this share of the datagrams, send some twice, some late");
-    app.add_option("--seed", station.seed, "Seed of the losses")->capture_default_str();
     app.add_flag_callback("-q,--quiet", beQuiet, "Say nothing but errors");
     app.add_flag_callback("-v,--verbose", beVerbose,
                           "Report datagrams that do not belong to the session");

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <random>
 #include <string>
 
 namespace radio {
@@ -45,24 +44,6 @@ class UdpSocket {
 
  private:
   int m_descriptor;
-};
-
-/** Loses a share of what is sent; a tenth of the rest is sent twice, and every fourth changes its
- * place with the next. With the same seed always the same ones. */
-class BadRadio {
- public:
-  /** \param loss 0: a good radio */
-  BadRadio(UdpSocket& socket, double loss, unsigned seed)
-      : m_socket(socket), m_random(seed), m_loss(loss) {}
-  void send(const Peer& to, const std::string& bytes);
-
- private:
-  bool chance(double p);
-
-  UdpSocket& m_socket;
-  std::mt19937 m_random;
-  double m_loss;
-  std::optional<std::pair<Peer, std::string>> m_late;
 };
 
 /** A key that two programs share. Each datagram carries a code behind it that only who has the key
