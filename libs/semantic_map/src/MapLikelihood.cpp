@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 #include "LikelihoodCache.h"
 
@@ -163,46 +163,27 @@ using mrpt::obs::TPixelLabelInfoBase;
 
 namespace {
 
-/** Takes bytes and makes a number of them. Four lanes, which the processor works on at a time. */
+/** Takes bytes and makes a number of them. */
 class HashStream : public mrpt::io::CStream {
  public:
   size_t Write(const void* buffer, size_t count) override {
-    const char* bytes = static_cast<const char*>(buffer);
-    const char* const end = bytes + count;
-    for (; end - bytes >= 32; bytes += 32)
-      for (int lane = 0; lane < 4; ++lane) mix(lane, wordAt(bytes + 8 * lane, 8));
-    for (; bytes < end; bytes += 8) mix(0, wordAt(bytes, std::min<size_t>(8, end - bytes)));
-    mix(0, count);
-    m_count += count;
+    const std::string_view bytes(static_cast<const char*>(buffer), count);
+    m_value = (m_value ^ std::hash<std::string_view>()(bytes)) * 0x9E3779B97F4A7C15u;
     return count;
   }
   template <class T>
   void addAll(const T& values) {
     if (values.size() > 0) Write(values.data(), values.size() * sizeof(values.data()[0]));
   }
-  std::uint64_t value() {
-    for (int lane = 1; lane < 4; ++lane) mix(0, m_lanes[lane]);
-    return m_lanes[0];
-  }
+  std::uint64_t value() const { return m_value; }
 
   size_t Read(void*, size_t) override { return 0; }
-  std::uint64_t Seek(int64_t, TSeekOrigin) override { return m_count; }
-  std::uint64_t getTotalBytesCount() const override { return m_count; }
-  std::uint64_t getPosition() const override { return m_count; }
+  std::uint64_t Seek(int64_t, TSeekOrigin) override { return 0; }
+  std::uint64_t getTotalBytesCount() const override { return 0; }
+  std::uint64_t getPosition() const override { return 0; }
 
  private:
-  static std::uint64_t wordAt(const char* bytes, size_t count) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes, count);
-    return word;
-  }
-  void mix(int lane, std::uint64_t word) {
-    m_lanes[lane] = (m_lanes[lane] ^ word) * 0x9E3779B97F4A7C15u;
-    m_lanes[lane] ^= m_lanes[lane] >> 29;
-  }
-
-  std::array<std::uint64_t, 4> m_lanes{1, 2, 3, 4};
-  std::uint64_t m_count = 0;
+  std::uint64_t m_value = 1;
 };
 
 template <unsigned BYTES>
