@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <future>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
@@ -188,9 +189,6 @@ using mrpt::poses::CPose3D;
 
 namespace {
 
-/** Scans that may wait for their turn. */
-constexpr std::size_t kScansAhead = 4;
-
 /** Milliseconds that an action takes. */
 template <typename Action>
 double timeOf(Action action) {
@@ -247,9 +245,12 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
                         const StopRequest& stop) {
   for (const fs::path& file : rawlogs) m_summary.rawlogs.push_back(file.string());
   std::optional<Progress> progress(std::in_place, "Mapping", totalSize(rawlogs));
-  labeled_cloud::ReadAhead<StreamedObservation> ahead([&stream] { return stream.next(); },
-                                                      kScansAhead);
-  while (auto observation = ahead.next()) {
+  const auto makeNext = [&stream] {
+    return std::async(std::launch::async, [&stream] { return stream.next(); });
+  };
+  auto ahead = makeNext();
+  while (auto observation = ahead.get()) {
+    ahead = makeNext();
     deskew(*observation);
     add(*observation);
     if ((m_summary.stopped = stop.pending())) break;

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/CObservationLabeledCloud.h>
 #include <labeled_cloud/Rawlogs.h>
-#include <labeled_cloud/ScanStream.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
@@ -9,7 +8,6 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <zstd.h>
 
-#include <atomic>
 #include <cstring>
 #include <random>
 #include <stdexcept>
@@ -216,43 +214,6 @@ TEST(RawlogReader, aClassThatIsNotRegisteredIsNamed) {
   bytes.replace(bytes.find("Labeled"), 7, "Unheard");
   const std::string error = errorReadingRawlog(folder.write("b.rawlog", bytes));
   EXPECT_TRUE(contains(error, "CObservationUnheardCloud' which is not registered"));
-}
-
-using labeled_cloud::ReadAhead;
-
-TEST(ReadAhead, handsThingsOverInTheirOrder) {
-  int made = 0;
-  ReadAhead<int> ahead(
-      [&]() -> std::optional<int> {
-        return made < 1000 ? std::optional<int>(made++) : std::nullopt;
-      },
-      3);
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ(ahead.next(), i);
-  EXPECT_FALSE(ahead.next());
-  EXPECT_FALSE(ahead.next());
-}
-
-TEST(ReadAhead, makesNoMoreThanMayWait) {
-  std::atomic<int> made = 0;
-  ReadAhead<int> ahead([&] { return std::optional<int>(++made); }, 3);
-  for (int taken = 1; taken < 100; ++taken) {
-    ahead.next();
-    ASSERT_LE(made, taken + 3 + 1);  // one more is in the maker's hands
-  }
-}
-
-TEST(ReadAhead, throwsWhatTheMakerThrewAfterWhatCameBefore) {
-  int made = 0;
-  ReadAhead<int> ahead(
-      [&]() -> std::optional<int> {
-        if (made == 2) throw std::runtime_error("the third");
-        return made++;
-      },
-      10);
-  EXPECT_EQ(ahead.next(), 0);
-  EXPECT_EQ(ahead.next(), 1);
-  EXPECT_THROW(ahead.next(), std::runtime_error);
-  EXPECT_FALSE(ahead.next());
 }
 
 using namespace labeled_cloud;
