@@ -43,7 +43,6 @@ mso_external_mrpt(nav)
 if(MSO_BUILD_APPS)
   find_package(${mso_mrpt}gui QUIET)  # windows
 endif()
-find_package(liblzf QUIET)  # compressed PCD files are refused without
 
 # The Python package is for Debian's interpreter, whichever comes first in the path.
 find_program(MSO_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)

@@ -36,7 +36,7 @@ using label_noise::LabelNoise;
 /** What all data sets have in common. */
 struct Conversion {
   std::filesystem::path output;
-  /** Class table file; empty: the data set's ids are the classes (PCD and PLY only). */
+  /** Class table file; empty: the data set's ids are the classes (PCD only). */
   std::filesystem::path classes;
   FrameRange frames;
   /** Share of the labels that is replaced by other classes, how, and with which seed. */
@@ -130,10 +130,9 @@ Summary convertSemanticKitti(const std::filesystem::path& sequence, const Conver
  * \throw std::runtime_error as above. */
 Summary convertTumSequence(const std::filesystem::path& folder, const Conversion& conversion);
 
-/** Point clouds as PCD or PLY, see labeled_cloud::readPointFile(), in the world's frame; VIEWPOINT
- * of a PCD is the sensor's pose, that of a PLY the origin. A file a scan, one second apart. \param
- * labelField the field with the labels, unless they are not wanted \throw std::runtime_error as
- * above. */
+/** Point clouds as PCD, see labeled_cloud::readPointFile(), in the world's frame; VIEWPOINT is the
+ * sensor's pose. A file a scan, one second apart. \param labelField the field with the labels,
+ * unless they are not wanted \throw std::runtime_error as above. */
 Summary convertPointFiles(const std::vector<std::filesystem::path>& files,
                           const std::string& labelField, const Conversion& conversion);
 

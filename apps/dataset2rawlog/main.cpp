@@ -27,7 +27,7 @@ struct Cli {
     addTum();
     addPcd();
     addCarmen();
-#ifdef MSO_BAGS  // where SQLite and LZ4 are
+#ifdef MSO_BAGS  // where SQLite is
     addRosbag2();
 #endif
   }
@@ -88,12 +88,12 @@ struct Cli {
   }
 
   void addPcd() {
-    CLI::App* command = add("pcd", "PCD or PLY files with x, y, z and a label", [this] {
+    CLI::App* command = add("pcd", "PCD files with x, y, z and a label", [this] {
       return convertPointFiles(pointFiles, labelField, conversion);
     });
     addClasses(command);
     addNoLabels(command, "x, y and z only");
-    command->add_option("--label-field", labelField, "Field (PLY: property) with the labels")
+    command->add_option("--label-field", labelField, "Field with the labels")
         ->type_name("NAME")
         ->capture_default_str();
     command->add_option("FILES", pointFiles, "The scans in order")->required();

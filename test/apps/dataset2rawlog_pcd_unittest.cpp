@@ -45,13 +45,11 @@ TEST_F(Pcd, aClassTableFoldsTheLabels) {
   EXPECT_EQ(scans.at(0).scan.cloud.classes, (std::vector<ClassId>{3, 2}));
 }
 
-TEST_F(Pcd, filesMayBePlyAndTheLabelsFieldHasAnyName) {
+TEST_F(Pcd, theLabelsFieldHasAnyName) {
   ClassTable table;
   for (const char* name : {"a", "b"}) table.add(name, {});
-  const std::string head =
-      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
-      "property float y\nproperty float z\nproperty int scalar_Class\nend_header\n";
-  const auto file = folder.write("a.ply", head + "1 2 3 2\n4 5 6 1\n");
+  const auto file =
+      folder.write("a.pcd", "FIELDS x y z scalar_Class\nPOINTS 2\nDATA ascii\n1 2 3 2\n4 5 6 1\n");
   const auto scans = convertAndRead("pcd --label-field scalar_Class " + quoted(file),
                                     folder / "out.rawlog", table);
   EXPECT_EQ(scans.at(0).scan.cloud.classes, (std::vector<ClassId>{2, 1}));

@@ -141,7 +141,7 @@ std::vector<Reader> programReaders() {
                    "labels/000000.label"},
                   readKitti),
        {}},
-      {"tum", fromFolder({"camera.ini", "groundtruth.txt", "depth.txt", "depth.pgm"}, readTum), {}},
+      {"tum", fromFolder({"camera.ini", "groundtruth.txt", "depth.txt", "depth.png"}, readTum), {}},
       {"map-poses", fromFile("", poses), {}},
       {"queries", askMap, {}},
       {"path", fromFile(".csv", [](const fs::path& f) { semantic_map_view::readTrack(f); }), {}},

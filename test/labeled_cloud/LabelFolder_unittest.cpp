@@ -88,17 +88,16 @@ TEST(LabelImages, ofOneBitHoldRawIdsToo) {
   EXPECT_EQ(readLabelImage(folder / "bit.png", roadGrassSky()).classes, expected);
 }
 
-TEST(LabelImages, goToTheDecoderThatTheirFirstBytesName) {
+TEST(LabelImages, arePngWhateverTheirNameIs) {
   const TemporaryFolder folder;
   const cv::Mat ids = (cv::Mat_<std::uint8_t>(2, 3) << 0, 1, 2, 3, 2, 1);
-  for (const char* name : {"a.tif", "a.bmp", "a.pgm"})
-    EXPECT_EQ(readLabelImage(save(folder, name, ids), roadGrassSky()).classes,
-              (std::vector<ClassId>{0, 1, 2, 3, 2, 1}))
-        << name;
-  EXPECT_TRUE(contains(errorReading(save(folder, "a.jpg", ids)), "no PNG, TIFF, BMP or PNM"));
-  std::string both = folder.read("a.bmp") + std::string(200, ' ');
-  both.replace(128, 4, "DICM");
-  EXPECT_TRUE(contains(errorReading(folder.write("b.bmp", both)), "no PNG, TIFF, BMP or PNM"));
+  for (const char* name : {"a.tif", "a.bmp", "a.pgm", "a.jpg"})
+    EXPECT_TRUE(contains(errorReading(save(folder, name, ids)), "it is no PNG image")) << name;
+  EXPECT_EQ(
+      readLabelImage(folder.write("b.jpg", folder.read(save(folder, "a.png", ids).filename())),
+                     roadGrassSky())
+          .classes,
+      (std::vector<ClassId>{0, 1, 2, 3, 2, 1}));
 }
 
 TEST(LabelImages, thatAnnounceMoreThanTheirBytesCanHoldAreRefused) {
@@ -110,13 +109,6 @@ TEST(LabelImages, thatAnnounceMoreThanTheirBytesCanHoldAreRefused) {
   for (int i = 0; i < 4; ++i) bytes[29 + i] = static_cast<char>(crc >> (24 - 8 * i));
   EXPECT_TRUE(contains(errorReading(folder.write("large.png", bytes)),
                        "65535 x 65535 pixels, more than its"));
-  for (const std::string& text :
-       {std::string("P5 # of a camera\n30000 30000\n255\n0000"),
-        folder.read(save(folder, "a.bmp", cv::Mat(1, 1, CV_8UC1)).filename())
-            .replace(18, 8, "0u\0\0\xd0\x8a\xff\xff", 8)})
-    EXPECT_TRUE(contains(errorReading(folder.write("large.img", text)),
-                         "30000 x 30000 pixels, more than its"))
-        << text.substr(0, 2);
 }
 
 TEST(LabelImages, inColorHoldColorsOfTheTableAndBlackForNone) {
@@ -172,28 +164,18 @@ TEST(LabelImages, thatCannotBeUsedAreNamed) {
 
 TEST(ImageFiles, mayNotAnnounceMoreThanTheirBytesCanHold) {
   const TemporaryFolder folder;
-  for (const char* name : {"a.tif", "a.jpg", "a.png", "a.bmp", "a.ppm"}) {
+  for (const char* name : {"a.jpg", "a.png"}) {
     SCOPED_TRACE(name);
     const cv::Mat read = readImageFile(
         save(folder, name, cv::Mat(200, 300, CV_8UC3, cv::Scalar(7, 7, 7))), ImageKinds::All);
     EXPECT_EQ(read.size(), cv::Size(300, 200));
   }
-  // 60000 columns as a number of 4 bytes, 50000 rows as one of 2: two fields of a TIFF file.
-  const std::string little{
-      "II*\0\x08\0\0\0\2\0\0\1\4\0\1\0\0\0\x60\xea\0\0"
-      "\1\1\3\0\1\0\0\0\x50\xc3\0\0\0\0\0\0",
-      38};
-  const std::string big{
-      "MM\0*\0\0\0\x08\0\2\1\0\0\4\0\0\0\1\0\0\xea\x60"
-      "\1\1\0\3\0\0\0\1\xc3\x50\0\0\0\0\0\0",
-      38};
   // A segment, a byte that belongs to none, and the header of a frame.
   const std::string jpeg{"\xff\xd8\xff\xe0\0\4ab\1\xff\xff\xc2\0\x0b\x08\xc3\x50\xea\x60\1\1\x11\0",
                          22};
-  for (const std::string& bytes : {little, big, jpeg})
-    EXPECT_TRUE(
-        contains(errorOf([&] { readImageFile(folder.write("image", bytes), ImageKinds::All); }),
-                 "image: says that it has 60000 x 50000 pixels, more than its"));
+  EXPECT_TRUE(
+      contains(errorOf([&] { readImageFile(folder.write("image", jpeg), ImageKinds::All); }),
+               "image: says that it has 60000 x 50000 pixels, more than its"));
 }
 
 TEST(LabelFolder, findsTheNearestInTime) {

@@ -9,7 +9,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -124,8 +123,7 @@ namespace {
 constexpr const char* kConfidence = ".confidence";
 
 bool isLabelImage(const fs::path& file) {
-  static const std::set<std::string> kEndings = {".png", ".tif", ".tiff", ".pgm", ".bmp"};
-  return fs::is_regular_file(file) && kEndings.count(file.extension().string()) &&
+  return fs::is_regular_file(file) && file.extension() == ".png" &&
          file.stem().extension() != kConfidence;
 }
 

@@ -97,12 +97,10 @@ cv::Mat readPng(const std::filesystem::path& path) {
   return pixels;
 }
 
-bool isIn(char c, char first, char last) { return c >= first && c <= last; }
-
 /** What an image file says of itself before its pixels. */
 class ImageHeader {
  public:
-  enum class Kind { None, Png, Bmp, Pnm, Tiff, Jpeg };
+  enum class Kind { None, Png, Jpeg };
 
   /** \throw std::filesystem::filesystem_error there is no such file. */
   explicit ImageHeader(const std::filesystem::path& file)
@@ -116,16 +114,14 @@ class ImageHeader {
     };
     read(1024);
     m_kind = kindOfBytes();
-    if (m_kind == Kind::Tiff || m_kind == Kind::Jpeg) read(m_fileSize);  // it may stand anywhere
+    if (m_kind == Kind::Jpeg) read(m_fileSize);  // it may stand anywhere
   }
   /** By the first bytes. None, too: what OpenCV may take for something else. */
   Kind kind() const { return m_kind; }
-  /** Bytes hold eight packed pixels at most; zlib has 1032 of them in one (PNG, TIFF), BMP's runs
-   * and JPEG's empty blocks 128.
+  /** Bytes hold eight packed pixels at most; zlib has 1032 of them in one, JPEG's empty blocks 128.
    * \throw std::runtime_error more pixels than the file's bytes can hold. */
   void checkSize() const {
-    const bool isPacked = m_kind == Kind::Png || m_kind == Kind::Tiff;
-    const std::uint64_t mostEach = 8 * (isPacked ? 1032 : 128);
+    const std::uint64_t mostEach = 8 * (m_kind == Kind::Png ? 1032 : 128);
     const auto [columns, rows] = size();
     if (columns > 0 && rows > mostEach * m_fileSize / columns)
       throw std::runtime_error("says that it has " + std::to_string(columns) + " x " +
@@ -143,89 +139,36 @@ class ImageHeader {
   Kind kindOfBytes() const {
     if (is("DICM", 128)) return Kind::None;
     if (is("\x89PNG")) return Kind::Png;
-    if (is("BM")) return Kind::Bmp;
-    if (m_bytes.size() > 2 && m_bytes[0] == 'P' && isIn(m_bytes[1], '1', '6')) return Kind::Pnm;
-    if (is(std::string("II*\0", 4)) || is(std::string("MM\0*", 4))) return Kind::Tiff;
     return is("\xff\xd8\xff") ? Kind::Jpeg : Kind::None;
   }
-  /** Rows of a BMP file may be counted from above, by a negative number. */
   Size size() const {
-    const auto ofBmp = [this](std::size_t at) {
-      const auto value = static_cast<std::int32_t>(number(at, 4, false));
-      return static_cast<std::uint64_t>(std::abs(std::int64_t{value}));
-    };
-    switch (m_kind) {
-      case Kind::Png:
-        return {number(16, 4, true), number(20, 4, true)};
-      case Kind::Bmp:
-        return {ofBmp(18), ofBmp(22)};
-      case Kind::Pnm:
-        return sizeOfPnm();
-      case Kind::Tiff:
-        return sizeOfTiff();
-      case Kind::Jpeg:
-        return sizeOfJpeg();
-      default:
-        return {};
-    }
-  }
-  Size sizeOfPnm() const {
-    std::size_t at = 2;
-    const std::uint64_t columns = nextNumber(at);
-    return {columns, nextNumber(at)};
-  }
-  /** From the first picture's list of fields (TIFF 6.0, section 2). Of a field twice, the larger.
-   */
-  Size sizeOfTiff() const {
-    constexpr std::uint64_t kColumns = 256, kRows = 257, kShort = 3, kFieldBytes = 12;
-    const bool isHighestFirst = m_bytes[0] == 'M';
-    const std::size_t list = number(4, 4, isHighestFirst);
-    Size size;
-    for (std::uint64_t i = 0; i < number(list, 2, isHighestFirst); ++i) {
-      const std::size_t field = list + 2 + i * kFieldBytes;
-      const std::uint64_t tag = number(field, 2, isHighestFirst);
-      const int bytes = number(field + 2, 2, isHighestFirst) == kShort ? 2 : 4;
-      const std::uint64_t value = number(field + 8, bytes, isHighestFirst);
-      if (tag == kColumns) size.columns = std::max(size.columns, value);
-      if (tag == kRows) size.rows = std::max(size.rows, value);
-    }
-    return size;
+    if (m_kind == Kind::Png) return {number(16, 4), number(20, 4)};
+    return m_kind == Kind::Jpeg ? sizeOfJpeg() : Size();
   }
   /** From the header of the frame (ITU-T T.81, B.2.2): it has one of the markers C0 to CF that is
    * no table. Markers 01 and D0 to D7 have no length; bytes between segments are skipped, as by
    * libjpeg. */
   Size sizeOfJpeg() const {
     for (std::size_t at = 2; at + 9 < m_bytes.size();) {
-      const std::uint64_t marker = number(at + 1, 1, true);
-      if (number(at, 1, true) != 0xff || marker == 0 || marker == 0xff) {
+      const std::uint64_t marker = number(at + 1, 1);
+      if (number(at, 1) != 0xff || marker == 0 || marker == 0xff) {
         ++at;
         continue;
       }
       const bool isTable = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
       if (marker >= 0xc0 && marker <= 0xcf && !isTable)
-        return {number(at + 7, 2, true), number(at + 5, 2, true)};
+        return {number(at + 7, 2), number(at + 5, 2)};
       const bool hasLength = marker != 1 && (marker < 0xd0 || marker > 0xd7);
-      at += 2 + (hasLength ? number(at + 2, 2, true) : 0);
+      at += 2 + (hasLength ? number(at + 2, 2) : 0);
     }
     return {};
   }
-  /** The number in `bytes` bytes; bytes beyond the end are zeros. */
-  std::uint64_t number(std::size_t at, int bytes, bool isHighestFirst) const {
+  /** The number in `bytes` bytes, the highest first; bytes beyond the end are zeros. */
+  std::uint64_t number(std::size_t at, std::size_t bytes) const {
     std::uint64_t value = 0;
-    for (int i = 0; i < bytes; ++i) {
-      const std::size_t from = at + static_cast<std::size_t>(isHighestFirst ? i : bytes - 1 - i);
+    for (std::size_t from = at; from < at + bytes; ++from)
       value = value << 8 | (from < m_bytes.size() ? static_cast<unsigned char>(m_bytes[from]) : 0);
-    }
     return value;
-  }
-  /** The next number in a PNM file's text, outside of comments; at most ten digits. */
-  std::uint64_t nextNumber(std::size_t& at) const {
-    while (at < m_bytes.size() && !isIn(m_bytes[at], '0', '9'))
-      at = m_bytes[at] == '#' ? std::min(m_bytes.find('\n', at), m_bytes.size()) : at + 1;
-    std::uint64_t number = 0;
-    for (; at < m_bytes.size() && isIn(m_bytes[at], '0', '9'); ++at)
-      number = std::min<std::uint64_t>(10 * number + std::uint64_t(m_bytes[at] - '0'), 1u << 31);
-    return number;
   }
 
   std::uintmax_t m_fileSize;
@@ -239,8 +182,8 @@ void check(const fs::path& file, ImageKinds kinds) {
   const bool all = kinds == ImageKinds::All;
   if (header.kind() == ImageHeader::Kind::None ||
       (!all && header.kind() == ImageHeader::Kind::Jpeg))
-    throw std::runtime_error(std::string("cannot be read: it is no PNG, ") + (all ? "JPEG, " : "") +
-                             "TIFF, BMP or PNM image");
+    throw std::runtime_error(std::string("cannot be read: it is no PNG ") +
+                             (all ? "or JPEG image" : "image"));
   header.checkSize();
 }
 

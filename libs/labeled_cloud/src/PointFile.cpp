@@ -15,10 +15,6 @@
 #include <string_view>
 #include <utility>
 
-#ifdef MSO_WITH_LZF
-#include <lzf.h>
-#endif
-
 namespace labeled_cloud {
 
 using strict_files::numbersOf;
@@ -41,7 +37,6 @@ struct PointHeader {
   std::vector<PointField> fields;
   std::size_t points = 0;
   std::string file, where;  ///< of the list of fields, for messages
-  std::string format;       ///< of the data
   std::size_t lines = 0;    ///< of the header
 };
 
@@ -149,51 +144,6 @@ Eigen::Isometry3d viewpoint(const TextLine& line) {
   return Eigen::Translation3d(v[0], v[1], v[2]) * q.normalized();
 }
 
-/** Kind and size of a property's type, by its name. */
-const std::map<std::string, std::pair<char, std::size_t>> kPlyTypes = {
-    {"char", {'I', 1}},  {"int8", {'I', 1}},    {"uchar", {'U', 1}},  {"uint8", {'U', 1}},
-    {"short", {'I', 2}}, {"int16", {'I', 2}},   {"ushort", {'U', 2}}, {"uint16", {'U', 2}},
-    {"int", {'I', 4}},   {"int32", {'I', 4}},   {"uint", {'U', 4}},   {"uint32", {'U', 4}},
-    {"float", {'F', 4}}, {"float32", {'F', 4}}, {"double", {'F', 8}}, {"float64", {'F', 8}}};
-
-std::size_t endOfPlyHeader(const std::string& bytes, const std::string& file) {
-  const std::size_t end = bytes.substr(0, kLongestHeader).find("\nend_header");
-  const std::size_t line = end == std::string::npos ? end : bytes.find('\n', end + 1);
-  if (line == std::string::npos) throw std::runtime_error(file + ": no end_header in a PLY file");
-  return line + 1;
-}
-
-PointHeader headerOfPly(const std::vector<TextLine>& lines, const std::string& file) {
-  PointHeader header;
-  header.file = file, header.lines = lines.size();
-  int elements = 0;
-  for (const TextLine& line : lines) {
-    const std::vector<std::string> words = wordsOf(line);
-    const auto refuseUnless = [&](bool isRight, const char* expected) {
-      if (!isRight)
-        throw std::runtime_error(line.where + ": '" + line.text + "', expected " + expected);
-    };
-    if (words.empty()) continue;
-    if (words[0] == "format") {
-      header.format = words.size() > 1 ? words[1] : "";
-    } else if (words[0] == "element" && ++elements == 1) {
-      refuseUnless(words.size() == 3 && words[1] == "vertex",
-                   "the first element to be 'vertex' and its number");
-      const double points = strict_files::numberOf(words[2]);
-      if (!isWhole(points, kMostPoints))
-        throw std::runtime_error(line.where + ": " + words[2] + " points");
-      header.points = static_cast<std::size_t>(points);
-      header.where = line.where;
-    } else if (words[0] == "property" && elements == 1) {
-      const auto type = words.size() == 3 ? kPlyTypes.find(words[1]) : kPlyTypes.end();
-      refuseUnless(type != kPlyTypes.end(), "a number's type and a name");
-      header.fields.push_back({words[2], type->second.first, type->second.second});
-    }
-  }
-  if (elements == 0) throw std::runtime_error(file + ": no element vertex in the PLY header");
-  return header;
-}
-
 /** x, y, z or the label in the data, and how many bytes (or numbers of a text) of a point are
  * before it. */
 struct Column {
@@ -287,10 +237,9 @@ std::size_t bytesOfPoint(const PointHeader& header) {
   return bytes;
 }
 
-/** Little-endian numbers: all of a point, then all of the next; or `byField`, all of a field, then
- * all of the next. \param bytes at least as many as the points need */
-PointFile readBinary(const PointHeader& header, const std::string& label, std::string_view bytes,
-                     bool byField) {
+/** Little-endian numbers: all of a point, then all of the next.
+ * \param bytes at least as many as the points need */
+PointFile readBinary(const PointHeader& header, const std::string& label, std::string_view bytes) {
   const std::vector<Column> columns = columnsOf(header, label, false);
   std::vector<ReadNumber> readers;
   for (const Column& column : columns) readers.push_back(readerOf(*column.field, header.where));
@@ -298,12 +247,8 @@ PointFile readBinary(const PointHeader& header, const std::string& label, std::s
   PointFile file;
   for (std::size_t i = 0; i < header.points; ++i) try {
       Values values{};
-      for (std::size_t k = 0; k < columns.size(); ++k) {
-        const auto& [field, before] = columns[k];
-        const std::size_t begin =
-            byField ? before * header.points + i * field->size : before + i * each;
-        values[k] = readers[k](bytes.data() + begin);
-      }
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        values[k] = readers[k](bytes.data() + i * each + columns[k].before);
       addPoint(values, columns.size() == 4, file);
     } catch (const std::exception& e) {
       throw std::runtime_error(header.file + ": point " + std::to_string(i) + ": " + e.what());
@@ -319,54 +264,16 @@ void requireBytes(const PointHeader& header, std::size_t bytes) {
                              " bytes");
 }
 
-/** LZF as in liblzf. \param size bytes of the result \throw std::runtime_error the data is damaged
- * or becomes more or less, its size is none that such data can have, or this was built without
- * liblzf.
- */
-std::string decompressLzf(std::string_view data, std::size_t size, const std::string& name) {
-#ifdef MSO_WITH_LZF
-  constexpr std::size_t kMostPerByte = 88;  // three bytes repeat at most 264
-  std::string bytes(size <= data.size() * kMostPerByte ? size : 0, '\0');
-  if (bytes.size() != size || lzf_decompress(data.data(), static_cast<unsigned int>(data.size()),
-                                             bytes.data(), static_cast<unsigned int>(size)) != size)
-    throw std::runtime_error(name + ": " + std::to_string(data.size()) +
-                             " bytes of compressed data do not become the " + std::to_string(size) +
-                             " that were announced");
-  return bytes;
-#else
-  static_cast<void>(data), static_cast<void>(size);
-  throw std::runtime_error(name +
-                           ": compressed, and this was built without liblzf; write it as"
-                           " DATA binary");
-#endif
-}
-
-/** Two sizes of 4 bytes, compressed and not; then the fields one after the other, compressed. */
-std::string uncompressed(const PointHeader& header, std::string_view data) {
-  std::uint32_t sizes[2] = {};
-  if (data.size() >= sizeof sizes) std::memcpy(sizes, data.data(), sizeof sizes);
-  if (data.size() < sizeof sizes || sizes[0] > data.size() - sizeof sizes)
-    throw std::runtime_error(header.file + ": " + std::to_string(data.size()) +
-                             " bytes of compressed data, announced were " +
-                             std::to_string(sizes[0] + sizeof sizes));
-  requireBytes(header, sizes[1]);
-  return decompressLzf(data.substr(sizeof sizes, sizes[0]), sizes[1], header.file);
-}
-
 PointFile parsePcd(const std::string& bytes, const std::string& name, const std::string& label) {
   const std::size_t dataBegin = endOfPcdHeader(bytes);
   const auto headerLines = strict_files::linesOf(bytes.substr(0, dataBegin), name);
   const PcdEntries entries(headerLines, name);
   const std::string format = entries.wordsForFields("DATA", "words", 1)[0];
-  if (format != "ascii" && format != "binary" && format != "binary_compressed")
+  if (format != "ascii" && format != "binary")
     throw std::runtime_error(entries.at("DATA").where + ": data '" + format +
-                             "', expected ascii, binary or binary_compressed");
-  PointHeader header{fieldsOf(entries, format != "ascii"),
-                     entries.number("POINTS"),
-                     name,
-                     entries.at("FIELDS").where,
-                     format,
-                     headerLines.size()};
+                             "', expected ascii or binary");
+  PointHeader header{fieldsOf(entries, format != "ascii"), entries.number("POINTS"), name,
+                     entries.at("FIELDS").where, headerLines.size()};
   checkGrid(entries, header.points);
   PointFile file;
   const std::string_view data = std::string_view(bytes).substr(dataBegin);
@@ -376,46 +283,18 @@ PointFile parsePcd(const std::string& bytes, const std::string& name, const std:
       throw std::runtime_error(name + ": " + std::to_string(lines.size() - header.lines) +
                                " lines of data for " + std::to_string(header.points) + " points");
     file = readText(header, label, lines);
-  } else if (format == "binary") {
-    requireBytes(header, data.size());
-    file = readBinary(header, label, data, false);
   } else {
-    file = readBinary(header, label, uncompressed(header, data), true);
+    requireBytes(header, data.size());
+    file = readBinary(header, label, data);
   }
   if (const TextLine* view = entries.find("VIEWPOINT")) file.T_file_sensor = viewpoint(*view);
   return file;
 }
 
-PointFile parsePly(const std::string& bytes, const std::string& name, const std::string& label) {
-  const std::size_t dataBegin = endOfPlyHeader(bytes, name);
-  const PointHeader header =
-      headerOfPly(strict_files::linesOf(bytes.substr(0, dataBegin), name), name);
-  const auto requireEnough = [&](std::size_t there, const std::string& what) {
-    if (there < header.points)
-      throw std::runtime_error(name + ": " + std::to_string(there) + what + " for " +
-                               std::to_string(header.points) + " points");
-  };
-  if (header.format == "ascii") {
-    const auto lines = strict_files::linesOf(bytes, name);
-    requireEnough(lines.size() - header.lines, " lines of data");
-    return readText(header, label, lines);
-  }
-  if (header.format != "binary_little_endian")
-    throw std::runtime_error(name + ": format '" + header.format +
-                             "', expected ascii or binary_little_endian");
-  const std::size_t each = bytesOfPoint(header);
-  const std::string_view data = std::string_view(bytes).substr(dataBegin);
-  requireEnough(each == 0 ? 0 : data.size() / each,
-                " times " + std::to_string(each) + " bytes of data");
-  return readBinary(header, label, data, false);
-}
-
 }  // namespace
 
 PointFile readPointFile(const std::filesystem::path& file, const std::string& labelField) {
-  const std::string bytes = strict_files::readText(file);
-  const bool ply = bytes.compare(0, 3, "ply") == 0;
-  return (ply ? parsePly : parsePcd)(bytes, file.string(), labelField);
+  return parsePcd(strict_files::readText(file), file.string(), labelField);
 }
 
 }  // namespace labeled_cloud

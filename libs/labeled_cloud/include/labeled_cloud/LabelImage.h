@@ -105,7 +105,7 @@ inline strict_files::Choices<LabelFolderOptions::Match> choicesOf(LabelFolderOpt
   return {{"time", LabelFolderOptions::Match::Time}, {"name", LabelFolderOptions::Match::Name}};
 }
 
-/** Label images in a folder (PNG, TIFF, PGM or BMP), one for each image of a camera, of its size.
+/** Label images in a folder (PNG), one for each image of a camera, of its size.
  *
  * - gray with 8 or 16 bits: the values are raw ids of the class table
  * - with a palette: so are the palette's indices, whatever its colors

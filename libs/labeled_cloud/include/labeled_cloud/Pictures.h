@@ -16,7 +16,7 @@ namespace labeled_cloud {
 
 /** Which kinds of image files are read. */
 enum class ImageKinds {
-  Lossless,  ///< PNG, TIFF, BMP and PNM: values of pixels that mean something
+  Lossless,  ///< PNG: values of pixels that mean something
   All        ///< JPEG, too
 };
 
