@@ -24,17 +24,15 @@ using namespace semantic_planning;
 
 namespace {
 
-constexpr Stroke kPath{kPathColor, 2, 2}, kTrack{{20, 20, 20}, 2, 2},
-    kOtherTrack{{20, 60, 220}, 2, 2};
+constexpr Stroke kPath{kPathColor, 2, 2}, kTrack{{20, 20, 20}, 2, 2};
 constexpr Arrow kStart{{40, 150, 40}, 18, 2}, kGoal{kGoalColor, 18, 2};
 
-void drawTrack(MapCanvas& canvas, const DriveRecord& record, const std::string& name,
-               const Stroke& stroke) {
+void drawTrack(MapCanvas& canvas, const DriveRecord& record) {
   std::vector<Eigen::Vector2d> line;
   for (const DriveRow& row : record.rows) line.emplace_back(row.pose.x, row.pose.y);
   if (line.empty()) return;
-  canvas.drawLine(line, stroke);
-  canvas.explain({name, stroke});
+  canvas.drawLine(line, kTrack);
+  canvas.explain({"driven", kTrack});
 }
 
 void drawRoute(MapCanvas& canvas, const PathTracker& tracker) {
@@ -81,7 +79,7 @@ void shadeWhatIsLeft(MapCanvas& canvas, const Eigen::AlignedBox2d& part, DriveLo
 }
 
 void drawDrive(MapCanvas& canvas, const DriveLoop& loop) {
-  drawTrack(canvas, loop.record(), "driven", kTrack);
+  drawTrack(canvas, loop.record());
   drawRoute(canvas, loop.controller().tracker());
   drawEnd(canvas, "start", loop.start(), kStart);
   if (!loop.explores()) drawEnd(canvas, "goal", loop.goal(), kGoal);
@@ -179,10 +177,6 @@ cv::Mat DrivePicture::frame(DriveLoop& loop) {
   cv::Mat below = picture.rowRange(canvas.picture().rows, picture.rows);
   map_pictures::drawScaleBar(below, canvas.pixelsPerMeter());
   return map_pictures::withTitle(map_pictures::withLegend(picture, {}, legend), caption(loop));
-}
-
-void addOtherTrack(MapCanvas& canvas, const DriveRecord& record) {
-  drawTrack(canvas, record, "driven before", kOtherTrack);
 }
 
 using mrpt::math::TPoint3D;

@@ -30,7 +30,7 @@ class DrivePicture {
    * \param showsLeft shades over the map say what looking may still tell */
   DrivePicture(const Eigen::AlignedBox2d& region, int longerEdge, bool showsLeft)
       : m_region(region), m_longerEdge(longerEdge), m_showsLeft(showsLeft) {}
-  /** Makes room for a drive's track, too: another place from here on. */
+  /** Makes room for a drive's track, too. */
   void include(const DriveRecord& record);
 
   map_pictures::MapCanvas draw(DriveLoop& loop) const;
@@ -49,9 +49,6 @@ class DrivePicture {
   std::optional<semantic_octree::MapFollower> m_changes;
   std::optional<map_pictures::MapCanvas> m_map;  ///< as the last frame shows it
 };
-
-/** Adds the track of another drive. */
-void addOtherTrack(map_pictures::MapCanvas& canvas, const DriveRecord& record);
 
 /** Shows a drive in the viewer's window while it goes on: the map, goal, path, driven track and
  * robot. The drive waits for the clock on the wall, until the window is closed. */

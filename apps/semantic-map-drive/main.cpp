@@ -33,10 +33,9 @@ namespace fs = std::filesystem;
 
 /** What the command line says. */
 struct Cli {
-  std::filesystem::path map, config, output;
+  std::filesystem::path map, order, config, output;
   std::filesystem::path weights;  ///< of what is explored for; empty: for whatever is unknown
   std::string solution;
-  std::vector<std::filesystem::path> order;
   std::string scene = "village";
   std::uint64_t seed = 1;
   double hills = 1, memory = semantic_octree::MapFolderOptions().memory;
@@ -93,10 +92,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
       ->type_name("NAME")
       ->needs("--weights");
-  app.add_option("--order", order,
-                 "Classes from best to worst (YAML); a second file makes a second drive to compare")
-      ->required()
-      ->expected(1, 2);
+  app.add_option("--order", order, "Classes from best to worst (YAML)")->required();
   app.add_option("--config", config, "Robot, sensors, planner (.ini, see config/drives)")
       ->required();
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
@@ -168,10 +164,9 @@ class Animation : public DriveObserver {
 };
 
 constexpr int kNotArrived = 2;  // exit status
-const std::vector<std::string> kFiles = {
-    "drive.csv",    "drive.json", "drive.png",           "drive.gif",  "drive.rawlog",
-    "map.semantic", "drive2.csv", "drive2.json",         "drive2.png", "drive2.gif",
-    "both.png",     "left.png",   "drive.reactivenavlog"};
+const std::vector<std::string> kFiles = {"drive.csv", "drive.json",          "drive.png",
+                                         "drive.gif", "drive.rawlog",        "map.semantic",
+                                         "left.png",  "drive.reactivenavlog"};
 
 void printSummary(const DriveRecord& record) {
   std::ostringstream text;
@@ -184,7 +179,7 @@ void printSummary(const DriveRecord& record) {
   if (!record.reason.empty()) notes() << record.reason << '\n';
 }
 
-/** The world and what is known of it, and one drive after the other in it. */
+/** The world and what is known of it, and the drive in it. */
 class DriveProgram {
  public:
   explicit DriveProgram(const Cli& cli)
@@ -193,72 +188,63 @@ class DriveProgram {
         m_weights(weightsOf(cli)),
         m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
         m_output(cli.output),
-        m_picture(regionOf(cli, m_scene.world), cli.explore ? 640 : 960, cli.explore),
-        m_whole(regionOf(cli, m_scene.world), 1200, false) {
+        m_picture(regionOf(cli, m_scene.world), cli.explore ? 640 : 960, cli.explore) {
     m_config.sensors.seed = cli.seed;
   }
 
   int run() {
-    const DriveRecord first = drive(m_cli.order[0], "drive");
+    const DriveRecord record = drive();
     if (m_cli.navlog)
       fs::rename(navlogs() / "log_000.reactivenavlog", m_output.staged("drive.reactivenavlog"));
-    if (m_cli.order.size() > 1 && !m_stop.pending()) {
-      const DriveRecord second = drive(m_cli.order[1], "drive2");
-      addOtherTrack(*m_last, first);
-      map_pictures::savePicture(m_last->sheet("both drives"), m_output.staged("both.png"));
-    }
     m_output.commit(kFiles);
     if (m_window) m_window->stay();
-    return first.arrived() || first.end == DriveEnd::Explored ? 0 : kNotArrived;
+    return record.arrived() || record.end == DriveEnd::Explored ? 0 : kNotArrived;
   }
 
  private:
   /** MRPT gives its logs names of its own, and finishes them when the drive is gone. */
   fs::path navlogs() const { return m_output.staged("navlogs"); }
 
-  /** What the robot knows: each drive begins with it. Tiles of a folder that the drive changes are
-   * kept apart. */
-  std::unique_ptr<semantic_octree::StoredMap> known(const std::string& name) const {
+  /** What the robot knows. Tiles of a folder that the drive changes are kept apart. */
+  std::unique_ptr<semantic_octree::StoredMap> known() const {
     if (m_cli.map.empty()) return nullptr;
     if (auto octomap = inputs::octomapIn(m_cli.map))
       return std::make_unique<semantic_octree::StoredMap>(std::move(*octomap));
     semantic_octree::MapFolderOptions options;
     options.memory = m_cli.memory;
-    options.draft = m_output.staged(name + "-tiles");
+    options.draft = m_output.staged("tiles");
     return std::make_unique<semantic_octree::StoredMap>(m_cli.map, options);
   }
 
-  DriveRecord drive(const fs::path& classes, const std::string& name) {
-    const auto order = semantic_planning::loadClassOrder(classes, synthetic_world::classTable());
-    m_window.reset();
-    DriveLoop& loop =
-        m_loop.emplace(m_config, m_scene.world, order, m_cli.start, goalOf(m_cli), m_cli.events,
-                       known(name), m_cli.navlog && name == "drive" ? navlogs() : fs::path());
+  DriveRecord drive() {
+    const auto order =
+        semantic_planning::loadClassOrder(m_cli.order, synthetic_world::classTable());
+    DriveLoop& loop = m_loop.emplace(m_config, m_scene.world, order, m_cli.start, goalOf(m_cli),
+                                     m_cli.events, known(), m_cli.navlog ? navlogs() : fs::path());
     if (m_cli.explore) loop.explore(m_weights);
     loop.stopWhen([this] { return m_stop.pending(); });
     std::optional<Recorder> recorder;
-    if (m_cli.rawlog && name == "drive") {
+    if (m_cli.rawlog) {
       loop.keepOriginals();
       loop.addObserver(recorder.emplace(m_output.staged("drive.rawlog")));
     }
     std::optional<Animation> animation;
     if (m_cli.pictures)
-      loop.addObserver(animation.emplace(m_picture, loop, m_output.staged(name + ".gif")));
+      loop.addObserver(animation.emplace(m_picture, loop, m_output.staged("drive.gif")));
     if (m_cli.live) {
       loop.keepOriginals();
       loop.addObserver(m_window.emplace(loop, m_scene.world, m_cli.start, goalOf(m_cli)));
       m_window->stopWhen([this] { return m_stop.pending(); });
     }
     const DriveRecord record = loop.run();
-    strict_files::writeText(m_output.staged(name + ".csv"), toCsv(record));
-    writeJson(m_output.staged(name + ".json"), toJson(record, order));
-    if (name == "drive")
-      semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
-    m_whole.include(record);
-    if (m_cli.explore && name == "drive")
+    strict_files::writeText(m_output.staged("drive.csv"), toCsv(record));
+    writeJson(m_output.staged("drive.json"), toJson(record, order));
+    semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
+    if (m_cli.explore)
       save(DrivePicture(regionOf(m_cli, m_scene.world), 1200, true).draw(loop), "left.png");
-    m_last = m_whole.draw(loop);
-    save(*m_last, name + ".png");
+    DrivePicture whole(regionOf(m_cli, m_scene.world), 1200, false);
+    whole.include(record);
+    save(whole.draw(loop), "drive.png");
     printSummary(record);
     if (!m_window) m_loop.reset();
     return record;
@@ -294,10 +280,8 @@ class DriveProgram {
   const std::optional<tree_abstraction::AbstractionWeights> m_weights;  ///< explored for
   synthetic_world::Scene m_scene;
   strict_files::OutputFolder m_output;
-  DrivePicture m_picture;  ///< on the way
-  DrivePicture m_whole;    ///< of all that was driven
-  std::optional<map_pictures::MapCanvas> m_last;
-  std::optional<DriveLoop> m_loop;  ///< of the last drive, as long as the window shows it
+  DrivePicture m_picture;           ///< on the way
+  std::optional<DriveLoop> m_loop;  ///< as long as the window shows it
   std::optional<LiveWindow> m_window;
 };
 
