@@ -12,11 +12,10 @@
 
 namespace semantic_map_plan {
 
-/** Writes a scene for MRPT's SceneViewer3D: the map, the roadmap's vertices, and the path.
+/** Writes a scene for MRPT's SceneViewer3D: the map and the path.
  * \param map null: it is left out, as one that may be larger than memory has to be
  * \throw std::runtime_error naming the file. */
 void saveScene(const semantic_octree::SemanticOcTree* map,
-               const semantic_planning::SemanticPlanner& planner,
                const semantic_planning::PlanResult& plan, const std::filesystem::path& file);
 
 /** Draws upon the map from above the drivable ground in its classes' colors and the holes in it,

@@ -90,7 +90,7 @@ void write(const Cli& cli, MapCanvas canvas, const SemanticPlanner& planner, con
   if (plan.found()) strict_files::writeText(output.staged("path.csv"), toCsv(plan, map.classes()));
   map_pictures::savePicture(drawPlan(std::move(canvas), planner, plan, cli.start, cli.goal),
                             output.staged("plan.png"));
-  saveScene(map.isReadOnly() ? nullptr : &map, planner, plan, output.staged("plan.3Dscene"));
+  saveScene(map.isReadOnly() ? nullptr : &map, plan, output.staged("plan.3Dscene"));
   if (planner.hasRoadmap())
     saveNetwork(planner.roadmap(), map.classes(), output.staged("roadmap.graph"));
   output.commit(kFiles);
