@@ -245,6 +245,7 @@ TEST_F(UserData, otherOutputsAreNotReplacedEither) {
   folder.write("classes.yaml", kSmallTable);
   folder.write("labeled.rawlog", "precious");
   folder.write("preview/000000.png", "precious");
+  folder.write("p.png", "precious");
   writeSmallRawlog(folder / "a.rawlog", robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
   const auto mapping = [](const Words& more) {
     return joined({"--config", "config.ini", "-o", "out", "a.rawlog"}, more);
@@ -258,6 +259,7 @@ TEST_F(UserData, otherOutputsAreNotReplacedEither) {
                   "classes.yaml: is an input", {"classes.yaml"});
   expectUntouched(program, mapping({"--preview", "preview"}), "000000.png: is there",
                   {"preview/000000.png"});
+  expectUntouched("synth-rawlog", {"--picture", "p.png"}, "p.png: is there", {"p.png"});
 }
 
 TEST_F(UserData, noFileIsWrittenTwice) {

@@ -58,8 +58,7 @@ void DriveLog::writeMovement(mrpt::Clock::time_point time, const Eigen::Isometry
 using mrpt::obs::CObservation3DRangeScan;
 using synthetic_world::ClassTable;
 
-/** Blue, green, red. */
-static cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image) {
+cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image) {
   cv::Mat3b result(image.height, image.width);
   for (int row = 0; row < image.height; ++row)
     for (int column = 0; column < image.width; ++column) {

@@ -295,4 +295,26 @@ Color surfaceColor(const World& world, const Hit& hit) {
   return color(lit + haze * (kHaze - lit));
 }
 
+TopView renderTopView(const World& world, double metersPerPixel) {
+  const double edge = 2 * world.halfExtent(), pixels = std::floor(edge / metersPerPixel);
+  if (!(metersPerPixel > 0) || pixels > 8192)
+    throw std::invalid_argument("top view: metersPerPixel is " + std::to_string(metersPerPixel) +
+                                ", a positive number that leaves 8192 pixels or fewer expected");
+  const int size = static_cast<int>(pixels);
+  constexpr double kHeight = 60;
+  TopView view{Image<Color>(size, size), Image<ClassId>(size, size, kNoClass)};
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const double x = (column + 0.5) * metersPerPixel - world.halfExtent();
+      const double y = world.halfExtent() - (row + 0.5) * metersPerPixel;
+      auto hit = world.castRay({x, y, world.groundHeight(x, y) + kHeight},
+                               -Eigen::Vector3d::UnitZ(), 2 * kHeight);
+      if (!hit) continue;
+      hit->range = 0;  // no haze
+      view.color.at(row, column) = surfaceColor(world, *hit);
+      view.labels.at(row, column) = hit->material.id;
+    }
+  return view;
+}
+
 }  // namespace synthetic_world
