@@ -27,7 +27,7 @@ struct Cli {
     addTum();
     addPcd();
     addCarmen();
-#ifdef MSO_BAGS  // where SQLite is
+#ifdef MSO_BAGS  // where SQLite and LZ4 are
     addRosbag2();
 #endif
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <lz4frame.h>
 #include <sqlite3.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -149,14 +150,19 @@ inline std::string record(std::uint8_t opcode, const std::string& content) {
 }
 
 inline std::string compressedBy(const std::string& method, const std::string& bytes) {
-  if (method != "zstd") return bytes;
-  std::string out(ZSTD_compressBound(bytes.size()), '\0');
-  out.resize(ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 3));
+  if (method.empty()) return bytes;
+  const bool isZstd = method == "zstd";
+  std::string out(
+      isZstd ? ZSTD_compressBound(bytes.size()) : LZ4F_compressFrameBound(bytes.size(), nullptr),
+      '\0');
+  out.resize(isZstd
+                 ? ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 3)
+                 : LZ4F_compressFrame(out.data(), out.size(), bytes.data(), bytes.size(), nullptr));
   return out;
 }
 
-/** \param chunks "none": messages without, "", "zstd" \return bytes of an MCAP file, whose summary
- * tells nothing but lies */
+/** \param chunks "none": messages without, "", "zstd", "lz4" \return bytes of an MCAP file, whose
+ * summary tells nothing but lies */
 inline std::string mcapOf(const std::vector<BagMessage>& messages, const std::string& chunks) {
   std::string file("\x89MCAP0\r\n", 8), records;
   const std::string magic = file;

@@ -1,5 +1,6 @@
 #include "Bag.h"
 
+#include <lz4frame.h>
 #include <sqlite3.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -116,42 +117,74 @@ void readSqlite(const fs::path& file, const WantsTopic& wants, const TakeMessage
   }
 }
 
-[[noreturn]] void failAsDamaged(const std::string& what) {
-  throw std::runtime_error("a chunk compressed by zstd is damaged: " + what);
+[[noreturn]] void failAs(std::string_view compression, const char* what) {
+  throw std::runtime_error("a chunk compressed by " + std::string(compression) +
+                           " is damaged: " + what);
 }
 
+struct Zstd {
+  static constexpr std::string_view kName = "zstd";
+  std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream{ZSTD_createDStream(),
+                                                                       &ZSTD_freeDStream};
+  void step(std::string_view& in, char* out, std::size_t& space) const {
+    ZSTD_inBuffer input{in.data(), in.size(), 0};
+    ZSTD_outBuffer output{out, space, 0};
+    const std::size_t result = ZSTD_decompressStream(stream.get(), &output, &input);
+    if (ZSTD_isError(result)) failAs(kName, ZSTD_getErrorName(result));
+    in.remove_prefix(input.pos);
+    space = output.pos;
+  }
+};
+
+struct Lz4 {
+  static constexpr std::string_view kName = "lz4";
+  LZ4F_dctx* context = nullptr;
+
+  Lz4() {
+    if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)))
+      throw std::bad_alloc();
+  }
+  ~Lz4() { LZ4F_freeDecompressionContext(context); }
+  Lz4(const Lz4&) = delete;
+  Lz4& operator=(const Lz4&) = delete;
+  void step(std::string_view& in, char* out, std::size_t& space) const {
+    std::size_t taken = in.size();
+    const std::size_t result = LZ4F_decompress(context, out, &space, in.data(), &taken, nullptr);
+    if (LZ4F_isError(result)) failAs(kName, LZ4F_getErrorName(result));
+    in.remove_prefix(taken);
+  }
+};
+
+template <class Method>
 std::string decompressed(std::string_view in, std::uint64_t size) {
   constexpr std::size_t kStep = 1 << 20;
-  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
-                                                                             &ZSTD_freeDStream);
-  ZSTD_inBuffer input{in.data(), in.size(), 0};
+  const Method method;
   std::string out;
   while (true) {
-    const std::size_t begin = out.size(), before = input.pos;
-    out.resize(begin + std::min<std::uint64_t>(kStep, size - begin + 1));  // one more is an error
-    ZSTD_outBuffer output{out.data(), out.size(), begin};
-    const std::size_t result = ZSTD_decompressStream(stream.get(), &output, &input);
-    if (ZSTD_isError(result)) failAsDamaged(ZSTD_getErrorName(result));
-    out.resize(output.pos);
-    if (out.size() > size) failAsDamaged("it is larger than announced");
-    if (out.size() == begin && (input.pos == input.size || input.pos == before)) break;
+    const std::size_t begin = out.size(), left = in.size();
+    std::size_t space = std::min<std::uint64_t>(kStep, size - begin + 1);  // one more is an error
+    out.resize(begin + space);
+    method.step(in, out.data() + begin, space);
+    out.resize(begin + space);
+    if (out.size() > size) failAs(Method::kName, "it is larger than announced");
+    if (space == 0 && (in.empty() || in.size() == left)) break;
   }
-  if (out.size() != size || input.pos != input.size)
-    failAsDamaged("it is not of the announced size");
+  if (out.size() != size || !in.empty()) failAs(Method::kName, "it is not of the announced size");
   return out;
 }
 
 /** What was compressed; memory grows with what comes out, not with what is announced.
- * \param compression "" (it was not) or "zstd" \param size as announced
+ * \param compression "" (it was not), "zstd" or "lz4" \param size as announced
  * \throw std::runtime_error it is another compression, damaged, or of another size. */
 std::string uncompressed(std::string_view bytes, std::string_view compression, std::uint64_t size) {
   if (size > kMostChunkBytes)
     throw std::runtime_error("a chunk of " + std::to_string(size) + " bytes, expected at most " +
                              std::to_string(kMostChunkBytes));
-  if (compression == "zstd") return decompressed(bytes, size);
+  if (compression == Zstd::kName) return decompressed<Zstd>(bytes, size);
+  if (compression == Lz4::kName) return decompressed<Lz4>(bytes, size);
   if (!compression.empty())
     throw std::runtime_error("a chunk is compressed by '" + std::string(compression) +
-                             "', expected zstd (mcap compress)");
+                             "', expected zstd or lz4");
   if (bytes.size() != size) throw std::runtime_error("a chunk is not of the announced size");
   return std::string(bytes);
 }
