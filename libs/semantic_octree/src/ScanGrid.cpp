@@ -104,7 +104,8 @@ ScanBeams::ScanBeams(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_s
   if (!T_map_sensor.matrix().allFinite())
     throw std::invalid_argument("the sensor's pose has numbers that are not finite");
   if (!insideMap(m_origin)) {
-    const Eigen::Vector3d sensor = T_map_sensor.translation();
+    const Eigen::Array3d sensor =
+        (100 * T_map_sensor.translation().array()).round() / 100;  // to the cm
     std::ostringstream what;
     const strict_files::ClassicNumbers classic(what);
     what << std::setprecision(10) << "sensor at (" << sensor.x() << ", " << sensor.y() << ", "
