@@ -1,8 +1,6 @@
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <semantic_types/ClassTable.h>
 #include <strict_files/OutputFiles.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -120,24 +118,6 @@ TEST_F(MapFolderFaults, oneWritesAndOthersReadWhatWasSaved) {
   writer.save();
   EXPECT_LT(tileFiles(folder / "map").size(), before);  // now it was
   EXPECT_TRUE(loadMap(folder / "map") == mapOf(scans, 8));
-}
-
-TEST_F(MapFolderFaults, saysThatTooManyFilesAreOpen) {
-  saveScans(folder / "map", someScans(5, 2));
-  const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  close(next);
-  rlimit before = {};
-  getrlimit(RLIMIT_NOFILE, &before);
-  std::string errors;
-  for (int more = 0; more < 4; ++more) {
-    const rlimit few = {static_cast<rlim_t>(next + more), before.rlim_max};
-    setrlimit(RLIMIT_NOFILE, &few);
-    SemanticOcTree map = emptyMap();
-    errors += errorOf([&] { MapFolder(map, folder / "map", kWrite); }) + "\n";
-    setrlimit(RLIMIT_NOFILE, &before);
-  }
-  EXPECT_TRUE(contains(errors, path("map") + ": Too many open files")) << errors;
-  EXPECT_FALSE(contains(errors, "another process")) << errors;
 }
 
 TEST_F(MapFolderFaults, aFullDiskLosesNothing) {
