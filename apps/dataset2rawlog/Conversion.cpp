@@ -143,7 +143,8 @@ void Output::writeDepth(CObservation3DRangeScan& scan, std::optional<LabelImage>
 
 Summary Output::finish() {
   if (m_summary.scans == 0)
-    throw std::runtime_error(m_conversion.output.string() + ": not written, no frame was selected");
+    throw std::runtime_error(m_conversion.output.string() +
+                             ": not written: no scan is there, or no frame was selected");
   m_progress.reset();
   m_writer.finish();
   return m_summary;

@@ -117,6 +117,7 @@ std::optional<Corridor> corridorOf(const Cli& cli, StoredMap& stored,
   CorridorTask task{cli.start, cli.goal, cli.startZ, cli.goalZ};
   task.width = cli.corridor.value_or(stored.folder() ? task.width : kAll);
   if (std::isinf(task.width)) return std::nullopt;
+  const TileProgress progress({&stored}, "Looking for a corridor", TileProgress::Order::Any);
   return findCorridor(stored.tree(), order, cli.planner, task);
 }
 
@@ -133,10 +134,7 @@ int run(Cli& cli) {
   const auto order = loadClassOrder(cli.order, stored->tree().classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;
-  std::optional<TileProgress> progress(std::in_place, std::vector{stored.get()},
-                                       "Looking for a corridor", TileProgress::Order::Any);
   const auto corridor = corridorOf(cli, *stored, order);
-  progress.reset();
   if (corridor && stored->folder()) {
     stored.reset();  // first, so that what it has in memory can be taken again
     stored = mapOf(cli, *corridor);
@@ -144,16 +142,18 @@ int run(Cli& cli) {
   SemanticOcTree& map = stored->tree();
   const double searchingCorridor = watch.lap();
   // Now, for what that takes is free again before the ground needs it.
-  progress.emplace(std::vector{stored.get()}, "Drawing the map");
+  std::optional<TileProgress> progress(std::in_place, std::vector{stored.get()}, "Drawing the map");
   MapCanvas canvas = MapCanvas::ofMap(map, {});
   watch.lap();
   const bool mayHaveGraph = !cli.planner.shorten || cli.planner.strict;
   const bool hasGraph = mayHaveGraph && isOfTree(cli.planner.roadmap.kind);
-  progress.emplace(std::vector{stored.get()}, "Compressing");
-  if (hasGraph || !cli.weights.empty())
+  progress.reset();
+  if (hasGraph || !cli.weights.empty()) {
+    progress.emplace(std::vector{stored.get()}, "Compressing");
     setAbstraction(map, cli.weights.empty() ? abstractionFor(order)
                                             : semantic_octree::loadSolution(
                                                   cli.weights, cli.solution, map.classes()));
+  }
   const double abstraction = watch.lap();
   progress.emplace(std::vector{stored.get()}, "Finding the ground", TileProgress::Order::Any);
   SemanticPlanner planner(map, order, cli.planner, corridor);

@@ -1,24 +1,40 @@
 #include "Complaints.h"
 
+#include <cstring>
 #include <iostream>
 
 namespace semantic_map_ros2 {
 
 namespace {
 constexpr std::size_t kMostKinds = 100;  // peers cannot fill memory
+
+/** A text without its numbers; digits within names stay. */
+std::string kindOf(const std::string& text) {
+  std::string kind;
+  for (const char c : text) {
+    const bool isOfNumber = std::strchr("0123456789.-", c) && c != '\0';
+    const bool isInName = !kind.empty() && !std::strchr(" (,", kind.back());
+    if (!isOfNumber || isInName) kind += c;
+  }
+  return kind;
 }
+
+}  // namespace
 
 void Complaints::say(const std::string& what, const std::string& details) {
   const std::lock_guard<std::mutex> lock(m_mutex);
-  if (m_counts.size() >= kMostKinds && m_counts.count(what) == 0) return;
-  if (++m_counts[what] == 1)
+  const std::string kind = kindOf(what);
+  if (m_said.size() >= kMostKinds && m_said.count(kind) == 0) return;
+  Said& said = m_said.emplace(kind, Said{what, 0}).first->second;
+  if (++said.count == 1)
     std::cerr << "Warning: " << what << (details.empty() ? "" : " (" + details + ")") << std::endl;
 }
 
 void Complaints::sum() const {
   const std::lock_guard<std::mutex> lock(m_mutex);
-  for (const auto& [what, count] : m_counts)
-    if (count > 1) std::cerr << "Warning: " << count << " times: " << what << std::endl;
+  for (const auto& [kind, said] : m_said)
+    if (said.count > 1)
+      std::cerr << "Warning: " << said.count << " times: " << said.what << std::endl;
 }
 
 }  // namespace semantic_map_ros2

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <ostream>
 #include <utility>
 
@@ -16,8 +17,9 @@ namespace semantic_map_ros2 {
 
 void GroundGrid::publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot) {
   if (!m_writes.isRead()) return;
-  const auto changed = m_costs.follow(T_map_robot.translation());
+  const auto changed = m_costs.follow(T_map_robot);
   if (!m_costs.box()) return;
+  sayFrameHeight();
   const bool isNew = !m_box || !(*m_box == *m_costs.box()) || m_writes.hasNewReader();
   m_box = m_costs.box();
   const ros2::Header header = ros2::headerOf(stamp, m_frame);
@@ -25,6 +27,17 @@ void GroundGrid::publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot
     publishAll(header);
   else if (changed)
     publishUpdate(header, *changed);
+}
+
+void GroundGrid::sayFrameHeight() {
+  const auto height = m_costs.frameHeight();
+  if (std::exchange(m_seesGround, height.has_value()) == height.has_value()) return;
+  if (height)
+    notes() << "The robot's frame is " << std::fixed << std::setprecision(1) << *height
+            << " m above the ground" << std::endl;
+  else
+    notes() << "The ground below the robot was not seen yet: all ground counts as reachable"
+            << std::endl;
 }
 
 void GroundGrid::publishAll(const ros2::Header& header) {
@@ -89,8 +102,10 @@ std::string Driving::explore(bool isToExplore) {
   if (!m_navigator) return "the robot does not drive";
   if (m_solidAngle == 0) return "nothing was seen yet";
   m_said.clear();
+  auto exploring = m_exploring;
+  exploring.sensorHeight += m_navigator->frameHeight().value_or(0);
   if (isToExplore)
-    m_navigator->explore(m_weights, m_exploring);
+    m_navigator->explore(m_weights, exploring);
   else
     m_navigator->endExploring();
   return {};
@@ -135,7 +150,9 @@ void Driving::plan(const Eigen::Isometry3d& T_map_robot, ros2::Stamp stamp) {
   }
   m_planner->update();
   const TPose2D start = planar(T_map_robot);
-  const double z = T_map_robot.translation().z();
+  m_height.look(m_planner->ground(), m_options.vehicle, T_map_robot);
+  std::optional<double> z;
+  if (m_height.meters()) z = m_height.onGround(T_map_robot).translation().z();
   const auto plan = m_isNew || !m_planner->hasPlanned() ? m_planner->plan(start, *m_goal, z)
                                                         : m_planner->replan(start, z);
   m_isNew = false;

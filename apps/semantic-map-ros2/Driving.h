@@ -32,10 +32,12 @@ class GroundGrid {
   using Box = GroundCosts::Box;
   void publishAll(const ros2::Header& header);
   void publishUpdate(const ros2::Header& header, const Box& changed);
+  void sayFrameHeight();
 
   GroundCosts m_costs;
   std::string m_frame;
-  std::optional<Box> m_box;  ///< that was published
+  std::optional<Box> m_box;          ///< that was published
+  std::optional<bool> m_seesGround;  ///< that was said
   ros2::Publication<ros2::OccupancyGrid> m_writes;
   ros2::Publication<ros2::OccupancyGridUpdate> m_writesUpdates;
 };
@@ -70,14 +72,15 @@ class Driving {
 
   semantic_slam::Mapper& m_mapper;
   std::optional<tree_abstraction::AbstractionWeights> m_weights;  ///< of what is explored for
-  semantic_driving::ExploreOptions m_exploring;
-  double m_solidAngle = 0;  ///< of its sensor; 0: nothing was seen yet
+  semantic_driving::ExploreOptions m_exploring;  ///< its sensor's height is above the frame
+  double m_solidAngle = 0;                       ///< of its sensor; 0: nothing was seen yet
   colored_graph::ClassOrder m_order;
   semantic_planning::PlannerOptions m_options;
   std::string m_frame;
   std::optional<semantic_navigation::Navigator> m_navigator;
   std::optional<semantic_planning::SemanticPlanner> m_planner;  ///< after the first goal
   std::optional<mrpt::math::TPose2D> m_goal;                    ///< of the planner
+  semantic_planning::FrameHeight m_height;
   bool m_isNew = false, m_moves = false;
   std::string m_said;
   std::vector<semantic_planning::PathPoint> m_published;

@@ -1,6 +1,7 @@
 #include "GroundCosts.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace semantic_map_ros2 {
@@ -16,16 +17,28 @@ GroundCosts::GroundCosts(semantic_octree::SemanticOcTree& map,
                          const colored_graph::ClassOrder& order,
                          const semantic_planning::PlannerOptions& options, std::vector<int> costs)
     : m_order(order),
+      m_vehicle(options.vehicle),
       m_follower(map.follow()),
       m_ground(map, options.vehicle, options.ground, order),
       m_costs(std::move(costs)) {
   m_follower.skipTiles();
 }
 
-auto GroundCosts::follow(const Eigen::Vector3d& robot) -> std::optional<Box> {
+/** What the robot stands on, if the map knows it. */
+auto GroundCosts::below(const Eigen::Isometry3d& T_map_robot) const -> std::optional<GroundPoint> {
+  if (!m_height.meters()) return std::nullopt;
+  const Eigen::Vector3d p = m_height.onGround(T_map_robot).translation();
+  const auto found = m_ground.find(p.x(), p.y(), p.z());
+  const bool isThere =
+      found && std::abs(found->surface.z - m_ground.keyOf(p.z())) <= 2 * m_ground.step();
+  return isThere ? found : std::nullopt;
+}
+
+auto GroundCosts::follow(const Eigen::Isometry3d& T_map_robot) -> std::optional<Box> {
   std::vector<Column> tiles = m_ground.update(m_follower.tiles());
   const bool hadRobot = m_robot.has_value();
-  m_robot = m_ground.find(robot.x(), robot.y(), robot.z());
+  m_height.look(m_ground, m_vehicle, T_map_robot);
+  m_robot = below(T_map_robot);
   if (!m_box || grow(tiles) || m_robot.has_value() != hadRobot) {
     const std::vector<Column> all = m_ground.tiles();
     tiles.insert(tiles.end(), all.begin(), all.end());

@@ -34,9 +34,11 @@ class GroundCosts {
   GroundCosts(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
               const semantic_planning::PlannerOptions& options, std::vector<int> costs);
 
-  /** Follows the map. \param robot its point on the ground, map frame, m
+  /** Follows the map. \param T_map_robot of a frame that may be anywhere on the robot
    * \return around the cells that changed; where box() is another one, all may be others */
-  std::optional<Box> follow(const Eigen::Vector3d& robot);
+  std::optional<Box> follow(const Eigen::Isometry3d& T_map_robot);
+  /** Of the robot's frame above the ground, m; none: it was not seen yet. */
+  std::optional<double> frameHeight() const { return m_height.meters(); }
   /** That the cells are of; none: nothing is known. */
   const std::optional<Box>& box() const { return m_box; }
   /** Row by row, the lowest first. */
@@ -66,10 +68,14 @@ class GroundCosts {
     return std::size_t(c.y - m_box->low.y) * m_box->width() + c.x - m_box->low.x;
   }
 
+  std::optional<GroundPoint> below(const Eigen::Isometry3d& T_map_robot) const;
+
   colored_graph::ClassOrder m_order;
+  semantic_planning::VehicleOptions m_vehicle;
   semantic_octree::MapFollower m_follower;
   semantic_planning::Ground m_ground;
   std::vector<int> m_costs;
+  semantic_planning::FrameHeight m_height;
   std::optional<GroundPoint> m_robot;           ///< none: it stands on nothing that is known
   std::map<Column, std::vector<Part>> m_parts;  ///< of tiles with drivable ground
   std::optional<Box> m_box;

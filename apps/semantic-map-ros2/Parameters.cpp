@@ -26,7 +26,7 @@ void NodeOptions::describe(OptionList& list) {
       "field of clouds that holds classes: raw ids of the class table, or `rgb`: colors of it");
   list.add("map_frame", mapFrame, "", "frame of the map, of goals, paths and grids");
   list.add("odom_frame", odomFrame, "", "with `slam`: the frame in which odometry has the robot");
-  list.add("base_frame", baseFrame, "", "frame of the robot");
+  list.add("base_frame", baseFrame, "", "frame of the robot, anywhere on it");
   list.add("use_sim_time", useSimTime, "", "time is what /clock says");
   list.add(
       "slam", slam, "",

@@ -163,6 +163,9 @@ TEST_F(MapFolders, areGoneThroughWithABarOnATerminal) {
            {"semantic-map-plan " + tiles + drive + plan,
             {"Looking for a corridor: 1 tiles", "Drawing the map: [", "Finding the ground: 1 tiles",
              "Planning: a path"},
+            "Path of "},
+           {"semantic-map-plan -f " + path("plain/map.semantic") + drive + plan,
+            {"Finding the ground: all of the map", "Planning: a path"},
             "Path of "}}) {
     const std::string text = shown(command);
     for (const std::string& bar : bars) EXPECT_TRUE(contains(text, bar)) << bar << '\n' << text;

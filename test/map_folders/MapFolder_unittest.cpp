@@ -1,9 +1,12 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_abstraction/AlphaTrees.h>
 #include <semantic_octree/MapFollower.h>
 #include <semantic_octree/store/MapAccess.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <functional>
 #include <numeric>
@@ -363,4 +366,22 @@ TEST(MapDrafts, ofMapsInOneFileAreTheMap) {
   StoredMap stored(folder / "map.semantic", draftIn(folder / "draft"));
   EXPECT_TRUE(stored.tree() == whole);
   EXPECT_EQ(stored.folder(), nullptr);
+}
+
+TEST_F(FolderTest, saysThatTooManyFilesAreOpen) {
+  saveScans(folder / "map", someScans(5, 2));
+  const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  close(next);
+  rlimit before = {};
+  getrlimit(RLIMIT_NOFILE, &before);
+  std::string errors;
+  for (int more = 0; more < 4; ++more) {
+    const rlimit few = {static_cast<rlim_t>(next + more), before.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &few);
+    SemanticOcTree map = emptyMap();
+    errors += errorOf([&] { MapFolder(map, folder / "map", kWrite); }) + "\n";
+    setrlimit(RLIMIT_NOFILE, &before);
+  }
+  EXPECT_TRUE(contains(errors, path("map") + ": Too many open files")) << errors;
+  EXPECT_FALSE(contains(errors, "another process")) << errors;
 }

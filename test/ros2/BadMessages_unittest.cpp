@@ -61,6 +61,18 @@ TEST_F(RoadInGrass, outlivesWhatIsWrong) {
   EXPECT_FALSE(live->map().empty());
 }
 
+TEST_F(RoadInGrass, saysOnceThatARobotInUtmIsOutsideOfTheMap) {
+  start({});
+  for (int i = 1; i <= 4; ++i) {
+    const Eigen::Translation3d easting(500000 + i, 4e6, 0);
+    live->place("map", "base_link", Eigen::Isometry3d(easting), i * kSecond);
+    live->send(*points, PointMessage(scan(), "lidar", i * kSecond).message());
+    EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "subtract the same offset"); }));
+  }
+  live->end();
+  EXPECT_EQ(count(live->said(), "outside the map"), 2u) << live->said();  // and how often
+}
+
 TEST_F(RoadInGrass, isNotSavedWhereNothingCame) {
   start({});
   EXPECT_EQ(live->end(), 1);

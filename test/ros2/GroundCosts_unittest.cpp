@@ -5,9 +5,13 @@
 #include <synthetic_world/Scene.h>
 #include <synthetic_world/Sensors.h>
 
+#include <cmath>
 #include <filesystem>
 #include <numeric>
 #include <random>
+
+#include "DataSets.h"
+#include "SharedData.h"
 
 using semantic_map_ros2::GroundCosts;
 using Box = GroundCosts::Box;
@@ -36,7 +40,7 @@ TEST(GroundCosts, afterEachScanAreThoseOfTheWholeMap) {
   std::mt19937 random(1);
   semantic_octree::SemanticOcTree map(0.25, classes);
   GroundCosts followed(map, order, {}, costs);
-  Eigen::Vector3d robot = Eigen::Vector3d::Zero();
+  Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
   for (int round = 0; round < 40; ++round) {
     // Patches of ground that others join later, and a robot that stands on one of them, or beside.
     const double way = 0.1 * (random() % 1200);
@@ -44,8 +48,8 @@ TEST(GroundCosts, afterEachScanAreThoseOfTheWholeMap) {
     const Eigen::Isometry3d T = scene.world.poseOnGround(at.x(), at.y(), scene.route.heading(way)) *
                                 Eigen::Translation3d(0, 0, 1.5);
     map.insert(synthetic_world::scanLidar(scene.world, T, lidar), T);
-    if (round % 5 == 0) robot = T.translation() - Eigen::Vector3d(0, 0, 1.5);
-    if (round % 7 == 0) robot.x() += 200;
+    if (round % 5 == 0) robot = T * Eigen::Translation3d(0, 0, -1.5);
+    if (round % 7 == 0) robot.translation().x() += 200;
     const auto box = followed.box();
     const auto cells = followed.cells();
     const auto changed = followed.follow(robot);
@@ -59,5 +63,98 @@ TEST(GroundCosts, afterEachScanAreThoseOfTheWholeMap) {
       if (changed && changed->has({box->low.x + x, box->low.y + y})) continue;
       ASSERT_EQ(int(followed.cells()[i]), int(cells[i])) << "changed in silence";
     }
+  }
+}
+
+namespace {
+
+constexpr double kHeights[] = {0, 0.3, 1.73};  // of base_link above the ground, m
+
+colored_graph::ClassOrder orderOf(const std::string& name,
+                                  const semantic_types::ClassTable& classes) {
+  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
+  return semantic_planning::loadClassOrder(config / "orders" / (name + ".yaml"), classes);
+}
+
+std::vector<int> someCosts(const colored_graph::ClassOrder& order) {
+  std::vector<int> costs(static_cast<std::size_t>(order.ranks()));
+  std::iota(costs.begin(), costs.end(), 0);
+  return costs;
+}
+
+/** Each with its frame at another height. */
+class SomeRobots {
+ public:
+  SomeRobots(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order) {
+    for (std::size_t i = 0; i < std::size(kHeights); ++i)
+      m_costs.emplace_back(map, order, semantic_planning::PlannerOptions(), someCosts(order));
+  }
+  void follow(const Eigen::Isometry3d& T_map_ground) {
+    for (std::size_t i = 0; i < std::size(kHeights); ++i)
+      m_costs[i].follow(T_map_ground * Eigen::Translation3d(0, 0, kHeights[i]));
+  }
+  void expectSameGrids() const {
+    for (const GroundCosts& costs : m_costs) expectSame(m_costs.front(), costs);
+  }
+  /** \param tolerance of a frame's height, m */
+  void expectHeights(double tolerance) const {
+    for (std::size_t i = 0; i < std::size(kHeights); ++i) {
+      ASSERT_TRUE(m_costs[i].frameHeight());
+      EXPECT_NEAR(*m_costs[i].frameHeight(), kHeights[i], tolerance);
+    }
+  }
+  /** Of what is known. */
+  double shareThatIsBlocked() const {
+    const GroundCosts& costs = m_costs.back();
+    const Box& box = *costs.box();
+    double known = 0, blocked = 0;
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int x = box.low.x; x <= box.high.x; ++x) {
+        known += costs.at({x, y}) != std::uint8_t(GroundCosts::kUnknown);
+        blocked += costs.at({x, y}) == GroundCosts::kBlocked;
+      }
+    return blocked / known;
+  }
+
+ private:
+  std::vector<GroundCosts> m_costs;
+};
+
+}  // namespace
+
+TEST(GroundCosts, areTheSameWhereverBaseLinkIsOnTheRobot) {
+  const auto scene = synthetic_world::makeScene("village", 3);
+  semantic_octree::SemanticOcTree map(0.2, synthetic_world::classTable());
+  SomeRobots robots(map, orderOf("synthetic", map.classes()));
+  synthetic_world::LidarOptions lidar;
+  lidar.rings = 32, lidar.columns = 360, lidar.maxRange = 20;
+  for (double way = 0; way < 20; ++way) {
+    const Eigen::Vector2d at = scene.route.at(way);
+    const Eigen::Isometry3d T = scene.world.poseOnGround(at.x(), at.y(), scene.route.heading(way)),
+                            T_map_sensor = T * Eigen::Translation3d(0, 0, 1.73);
+    map.insert(synthetic_world::scanLidar(scene.world, T_map_sensor, lidar), T_map_sensor);
+    robots.follow(T);
+    robots.expectSameGrids();
+  }
+  robots.expectHeights(0.2);
+}
+
+TEST(GroundCosts, ofAStreetAreTheSameWhereverBaseLinkIsOnTheRobot) {
+  SKIP_WITHOUT_DATA("semantic_kitti");
+  const auto classes = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
+                                                      "config/classes/semantic_kitti.yaml");
+  for (const std::string sequence : {"00", "07"}) {
+    semantic_octree::SemanticOcTree map(0.2, classes);
+    SomeRobots robots(map, orderOf("semantic_kitti", classes));
+    semantic_octree::InsertionOptions insertion;
+    insertion.maxRange = 25;
+    for (const LabeledFrame& frame :
+         readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, classes)) {
+      map.insert(frame.cloud, frame.T_map_sensor, insertion);
+      robots.follow(frame.T_map_sensor * Eigen::Translation3d(0, 0, -1.73));
+      robots.expectSameGrids();
+    }
+    robots.expectHeights(0.2);
+    EXPECT_LT(robots.shareThatIsBlocked(), 0.5);
   }
 }

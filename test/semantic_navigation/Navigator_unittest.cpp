@@ -40,8 +40,10 @@ NavigatorOptions someOptions(double latency = 0) {
 /** A robot that does what it is told at once, and sees with a LiDAR each half a second. */
 class Robot {
  public:
-  explicit Robot(const NavigatorOptions& options)
-      : m_mapper(m_map, mapping()),
+  /** \param height of its frame above the ground, m */
+  explicit Robot(const NavigatorOptions& options, double height = 0)
+      : m_height(height),
+        m_mapper(m_map, mapping()),
         navigator(
             m_mapper,
             colored_graph::ClassOrder(synthetic_world::classTable().size() + 1,
@@ -110,11 +112,12 @@ class Robot {
   }
   void update() {
     const TPose2D& p = m_robot.drive.pose;
-    m_robot.T_odometry_robot = m_world.poseOnGround(p.x, p.y, p.phi);
+    m_robot.T_odometry_robot =
+        m_world.poseOnGround(p.x, p.y, p.phi) * Eigen::Translation3d(0, 0, m_height);
     navigator.update(m_robot);
   }
   std::vector<SensorScan> scans() const {
-    SensorScan scan{{}, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.4))};
+    SensorScan scan{{}, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.4 - m_height))};
     const Eigen::Isometry3d T_world_sensor = m_robot.T_odometry_robot * scan.T_robot_sensor;
     scan.cloud = scanLidar(m_world, T_world_sensor, {24, 180, -45, 10, 20, 0, {}});
     scan.cloud.points.resize(scan.cloud.points.size() + useless, {0.1f, 0, 0});
@@ -122,6 +125,7 @@ class Robot {
     return {scan};
   }
 
+  double m_height;
   synthetic_world::World m_world = plain();
   semantic_octree::SemanticOcTree m_map{0.2, synthetic_world::classTable()};
   semantic_slam::Mapper m_mapper;
@@ -173,6 +177,20 @@ TEST(Navigator, DrivesToANewGoalWhenItHasComeToRest) {
   EXPECT_LT(distance(robot.pose(), goal), 0.3);
   for (std::size_t i = 1; i < robot.commands.size(); ++i)
     EXPECT_LT(std::abs(robot.commands[i].first - robot.commands[i - 1].first), 0.1) << i;
+}
+
+TEST(Navigator, DrivesAlikeWhereverItsFrameIsOnTheRobot) {
+  std::vector<std::pair<double, double>> commands;
+  for (const double height : {0.0, 0.3, 1.73}) {
+    Robot robot(someOptions(), height);
+    EXPECT_FALSE(robot.navigator.frameHeight());
+    robot.navigator.setGoal({3, 2, 0});
+    EXPECT_EQ(robot.drive(), Status::Arrived) << robot.navigator.reason();
+    ASSERT_TRUE(robot.navigator.frameHeight());
+    EXPECT_NEAR(*robot.navigator.frameHeight(), height, 0.15);
+    if (height == 0) commands = robot.commands;
+    EXPECT_TRUE(robot.commands == commands) << height;
+  }
 }
 
 TEST(Navigator, IsNotHeldByWhatIsLeftInItsOwnPlace) {

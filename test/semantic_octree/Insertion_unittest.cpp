@@ -120,6 +120,8 @@ TEST(BadInput, sensorOutsideTheMapIsRefused) {
   expectRefused("sensor at (4000, 0, 0) m", threePoints(), at(4000, 0, 0));
   expectRefused("outside the map", threePoints(), at(0, -3277, 0));
   expectRefused("outside the map", threePoints(), at(0, 0, 3276.8));
+  expectRefused("(500000, 4000000, 100) m is outside the map, which reaches", threePoints(),
+                at(500000, 4e6, 100));
   expectRefused("not finite", threePoints(), at(0, 0, NAN));
   Eigen::Isometry3d twisted = at(0, 0, 0);
   twisted.linear()(0, 0) = INFINITY;

@@ -114,6 +114,9 @@ TileProgress::TileProgress(const std::vector<StoredMap*>& maps, std::string task
     m_folders.push_back(folder);
     m_total += folder->contents().tiles;
   }
+  if (!m_folders.empty()) return;
+  m_progress.emplace(m_task, 0);  // in memory: how long it takes, nobody knows
+  m_progress->update(0, "all of the map");
 }
 
 TileProgress::~TileProgress() {

@@ -29,9 +29,15 @@ class PointLabels {
   std::vector<float> m_confidences, m_probabilities;
 };
 
+/** Name of an object's class, without its namespaces. */
+inline std::string kindOf(const mrpt::rtti::CObject& o) {
+  const std::string name = o.GetRuntimeClass()->className;
+  return name.substr(name.rfind(':') + 1);
+}
+
 /** What messages call an observation: class, sensor, time. */
 inline std::string nameOf(const mrpt::obs::CObservation& o) {
-  return std::string(o.GetRuntimeClass()->className) + " '" + o.sensorLabel + "' at " +
+  return kindOf(o) + " '" + o.sensorLabel + "' at " +
          std::to_string(mrpt::Clock::toDouble(o.timestamp)) + " s";
 }
 

@@ -238,7 +238,7 @@ std::optional<RawlogEntry> RawlogReader::next() {
   } else if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) {
     entry.observations.push_back(observation);
   } else {
-    fail(std::string("a ") + object->GetRuntimeClass()->className + " does not belong in a rawlog");
+    fail("a " + kindOf(*object) + " does not belong in a rawlog");
   }
   for (const auto& o : entry.observations)
     if (!hasFlags(*o)) fail("a flag of " + nameOf(*o) + " is neither 0 nor 1");

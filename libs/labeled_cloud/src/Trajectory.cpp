@@ -285,8 +285,7 @@ StreamedObservation ScanStream::take(const Waiting& waiting) {
   StreamedObservation result;
   const std::string place =
       m_rawlogs[m_file - 1].string() + ": observation " + std::to_string(waiting.number);
-  result.name = place + " (" + observation.GetRuntimeClass()->className + " '" +
-                observation.sensorLabel + "')";
+  result.name = place + " (" + kindOf(observation) + " '" + observation.sensorLabel + "')";
   result.bytesRead = m_bytesBefore + (m_reader ? m_reader->bytesRead() : 0);
   try {
     use(observation, result);
@@ -317,8 +316,7 @@ void ScanStream::use(const CObservation& observation, StreamedObservation& resul
   if (m_labeler && isPicture(observation)) return checkOrder(observation);
   if (!ScanConverter::accepts(observation)) {
     result.holdsPose = saysWhereTheRobotIs(observation);
-    result.skipped =
-        std::string("of a kind without points: ") + observation.GetRuntimeClass()->className;
+    result.skipped = "of a kind without points: " + kindOf(observation);
     return;
   }
   checkOrder(observation);

@@ -8,10 +8,12 @@
 #include <strict_files/Words.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <limits>
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 #include "TileIndex.h"
 #include "TilesOnDisk.h"
@@ -22,6 +24,12 @@ namespace fs = std::filesystem;
 using strict_files::FileLock;
 
 namespace {
+
+/** Right after FileLock::tryTo(), which says no also if it cannot know. */
+std::string whyNotLocked() {
+  if (errno == EWOULDBLOCK) return "another process writes into this folder";
+  return std::generic_category().message(errno);
+}
 
 /** A map without its tiles. */
 class LeavesCursor {
@@ -159,8 +167,7 @@ class MapFolder::Tiles {
     if (saves()) {
       m_unsaved.emplace(m_folder);
       m_writer = FileLock::tryTo(m_folder / TileIndex::kWriterLock, FileLock::Kind::Exclusive);
-      if (!m_writer)
-        throw std::runtime_error(m_folder.string() + ": another process writes into this folder");
+      if (!m_writer) throw std::runtime_error(m_folder.string() + ": " + whyNotLocked());
       m_unsaved->takeAlong(TileIndex::kWriterLock);
     } else {
       m_reader.emplace(m_folder / TileIndex::kReadersLock, FileLock::Kind::Shared);

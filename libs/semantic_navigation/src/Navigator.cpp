@@ -73,9 +73,10 @@ SemanticPlanner plannerOn(semantic_octree::SemanticOcTree& map,
 /** What a robot stands on where it begins: ground below its footprint and around it, as far as the
  * planner wants to know. Sensors do not see that near: it has the class of what they see on both
  * sides (GroundOptions::unknownGap), if that is one, otherwise whatever class.
+ * \param height of the robot's frame above the ground, m
  * \return points in the robot's frame, in the voxels that hold the ground */
 semantic_types::LabeledCloud groundBelow(const semantic_planning::SemanticPlanner& planner,
-                                         const Eigen::Isometry3d& T_map_robot) {
+                                         const Eigen::Isometry3d& T_map_robot, double height) {
   constexpr double kBelow = 1e-3;  // m
   const semantic_planning::VehicleOptions& vehicle = planner.options().vehicle;
   const semantic_planning::Ground& ground = planner.ground();
@@ -85,7 +86,7 @@ semantic_types::LabeledCloud groundBelow(const semantic_planning::SemanticPlanne
   semantic_types::LabeledCloud cloud;
   for (double x = box.min().x() - room; x < box.max().x() + room; x += step)
     for (double y = box.min().y() - room; y < box.max().y() + room; y += step) {
-      const Eigen::Vector3d below(x, y, -kBelow), p = T_map_robot * below;
+      const Eigen::Vector3d below(x, y, -height - kBelow), p = T_map_robot * below;
       const auto* known =
           ground.near(ground.columnAt(p.x(), p.y()), ground.keyOf(p.z()), ground.step());
       cloud.points.push_back(below.cast<float>());
@@ -187,7 +188,7 @@ void Navigator::update(const RobotState& robot) {
 /** Without corrections it is where odometry has it, to the last bit. */
 void Navigator::correctState() {
   m_state = m_robot.drive;
-  m_z = m_robot.T_odometry_robot.translation().z();
+  m_z = m_height.onGround(m_robot.T_odometry_robot).translation().z();
   if (!m_mapper.slam()) return;
   const TPose2D& p = m_robot.drive.pose;
   const Eigen::Isometry3d T = m_mapper.T_map_odometry() * Eigen::Translation3d(p.x, p.y, m_z) *
@@ -250,18 +251,18 @@ void Navigator::carve(const Mapper::Place& at, const std::vector<Eigen::Vector2d
   constexpr int kSure = 10;      // beams until it is free, whatever was seen before
   constexpr double kBody = 0.4;  // m
   const semantic_planning::VehicleOptions& vehicle = m_planner.options().vehicle;
+  const Eigen::Isometry3d T_map_ground = m_fillsHeight.onGround(at.T_map_robot);
   const auto column = [&](const Eigen::Vector3d& base, double radius) {
     for (double z = vehicle.stepHeight + radius; z < vehicle.height + radius; z += radius)
       for (int i = 0; i < kSure; ++i)
         m_mapper.insertFree(base + z * Eigen::Vector3d::UnitZ(), radius, at);
   };
   for (const Eigen::Vector2d& p : left)
-    column(
-        at.T_map_robot.inverse() * Eigen::Vector3d(p.x(), p.y(), at.T_map_robot.translation().z()),
-        kBody);
-  if (!isAnythingWithin(m_mapper.map(), vehicle, at.T_map_robot)) return;
+    column(at.T_map_robot.inverse() * Eigen::Vector3d(p.x(), p.y(), T_map_ground.translation().z()),
+           kBody);
+  if (!isAnythingWithin(m_mapper.map(), vehicle, T_map_ground)) return;
   for (const semantic_planning::Disc& d : vehicle.footprint.coveringDiscs())
-    column({d.x, d.y, 0}, d.radius);
+    column({d.x, d.y, -m_fillsHeight.meters().value_or(0)}, d.radius);
 }
 
 StageTimes Navigator::fill(const std::vector<SensorScan>& seen, const Mapper::Place& at,
@@ -271,8 +272,10 @@ StageTimes Navigator::fill(const std::vector<SensorScan>& seen, const Mapper::Pl
   carve(at, left);
   StageTimes times{{"insert", clock.lap()}};
   m_planner.update();
-  if (!std::exchange(m_stands, true)) {
-    m_mapper.insertBelow(groundBelow(m_planner, at.T_map_robot), at);
+  m_fillsHeight.look(m_planner.ground(), m_planner.options().vehicle, at.T_map_robot);
+  if (!m_stands && m_fillsHeight.meters()) {
+    m_stands = true;
+    m_mapper.insertBelow(groundBelow(m_planner, at.T_map_robot, *m_fillsHeight.meters()), at);
     m_planner.update();
   }
   times.emplace_back("update", clock.lap());
@@ -283,6 +286,8 @@ void Navigator::finish() {
   if (!isInserting()) return;
   const StageTimes times = m_inserting.get();
   m_mappedAt = m_insertingFrom;
+  m_height = m_fillsHeight;
+  correctState();  // by what is known of it
   for (const auto& [stage, milliseconds] : times) note(stage, milliseconds);
 }
 

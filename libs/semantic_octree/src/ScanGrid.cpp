@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <new>
 #include <sstream>
@@ -54,7 +55,7 @@ void ScanGrid::cover(const VoxelIndex& lowest, const VoxelIndex& highest, std::s
     throw std::length_error(
         "scan too large to insert: " + std::to_string(m_numPages * kTilesPerPage) +
         " tiles of 8 x 8 x 8 voxels, where memory allows " + std::to_string(maxTiles) +
-        "; set max_range");
+        "; set max_range, if the points are in meters");
   reserve();
 }
 
@@ -103,12 +104,13 @@ ScanBeams::ScanBeams(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_s
   if (!T_map_sensor.matrix().allFinite())
     throw std::invalid_argument("the sensor's pose has numbers that are not finite");
   if (!insideMap(m_origin)) {
-    const Eigen::Vector3d sensor = T_map_sensor.translation();
+    const Eigen::Array3d sensor =
+        (100 * T_map_sensor.translation().array()).round() / 100;  // to the cm
     std::ostringstream what;
     const strict_files::ClassicNumbers classic(what);
-    what << "sensor at (" << sensor.x() << ", " << sensor.y() << ", " << sensor.z()
-         << ") m is outside the map, which reaches " << kKeyOfOrigin * resolution
-         << " m from its origin";
+    what << std::setprecision(10) << "sensor at (" << sensor.x() << ", " << sensor.y() << ", "
+         << sensor.z() << ") m is outside the map, which reaches " << kKeyOfOrigin * resolution
+         << " m from its origin: subtract the same offset from all poses";
     throw std::out_of_range(what.str());
   }
   std::size_t numBeams[5] = {};

@@ -40,7 +40,8 @@ struct NavigatorOptions {
 /** Where odometry has the robot, and how it moves. */
 struct RobotState {
   semantic_driving::DriveState drive;  ///< pose in the frame of odometry
-  /** The robot's pose with the height of the ground below it, and its tilt. */
+  /** The robot's pose in space. The origin of its frame may be anywhere on it: how high that is
+   * above the ground follows from what its sensors see. */
   Eigen::Isometry3d T_odometry_robot = Eigen::Isometry3d::Identity();
 };
 
@@ -111,6 +112,8 @@ class Navigator {
   std::string reason() const;
   /** Where the robot is in the map. */
   const semantic_driving::DriveState& state() const { return m_state; }
+  /** Of the robot's frame above the ground, m; none: no ground was seen yet. */
+  std::optional<double> frameHeight() const { return m_height.meters(); }
   /** When the newest scan that the map has was taken, seconds; before all: far in the past. */
   double mappedAt() const { return m_mappedAt; }
   /** Leaves of the compressed tree, as the planner knows it. Waits as mapper(). */
@@ -159,13 +162,15 @@ class Navigator {
   std::string m_conclusion;                                 ///< of exploring that is over
   OnStage m_onStage;
   RobotState m_robot;
-  semantic_driving::DriveState m_state;       ///< map frame
-  double m_z = 0;                             ///< of the ground below it, map frame
-  bool m_stands = false;                      ///< the map has what the robot stands on
-  bool m_guidesNext = false;                  ///< as soon as the map has what was seen
-  bool m_restsFirst = false;                  ///< before it looks for a way to a new goal
-  double m_mappedAt;                          ///< seconds
-  double m_insertingFrom = 0;                 ///< when the scan that is being inserted was taken
+  semantic_driving::DriveState m_state;     ///< map frame
+  double m_z = 0;                           ///< of the ground below it, map frame
+  semantic_planning::FrameHeight m_height;  ///< by what the map had when the last scan was in it
+  bool m_stands = false;                    ///< the map has what the robot stands on
+  semantic_planning::FrameHeight m_fillsHeight;  ///< of the thread that fills the map
+  bool m_guidesNext = false;                     ///< as soon as the map has what was seen
+  bool m_restsFirst = false;                     ///< before it looks for a way to a new goal
+  double m_mappedAt;                             ///< seconds
+  double m_insertingFrom = 0;                    ///< when the scan that is being inserted was taken
   semantic_driving::ObstaclePoints m_before;  ///< known without that one, and the robot's pose then
   semantic_driving::ObstaclePoints m_roomBefore;
   mrpt::math::TPose2D m_beforeAt;

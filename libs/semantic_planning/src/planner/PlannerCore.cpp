@@ -192,7 +192,7 @@ void PlannerCore::standAt(const Place& start) {
   assume({});
   const PlanStatus status = placed(start, m_startPose);
   if (status != PlanStatus::StartOffGround && status != PlanStatus::StartBlocked) return;
-  assume(groundBelow(m_ground, m_options.vehicle, order(), start.pose, start.z));
+  assume(groundBelow(m_ground, m_options.vehicle, start.pose, start.z));
 }
 
 void PlannerCore::makeRoadmap() {

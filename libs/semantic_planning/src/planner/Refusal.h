@@ -26,7 +26,6 @@ Refusal refusalOf(const CollisionChecker& checker, PlanStatus status,
  * \return the columns of the footprint and the clearance around it in which the map has no surface;
  * none if ground is not known on all four sides, or is forbidden */
 std::vector<GroundPoint> groundBelow(const Ground& ground, const VehicleOptions& vehicle,
-                                     const colored_graph::ClassOrder& order,
                                      const mrpt::math::TPose2D& pose, std::optional<double> z);
 
 }  // namespace semantic_planning

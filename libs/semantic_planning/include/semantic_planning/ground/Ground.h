@@ -7,6 +7,7 @@
 #include <semantic_planning/ground/Surface.h>
 #include <semantic_planning/vehicle/VehicleOptions.h>
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -109,6 +110,27 @@ class Ground {
   double m_perMeter;  ///< voxels, as keyOf() of semantic_octree has them: it divides each time
   int m_step, m_largestClearance;
   bool m_isLimited;
+};
+
+/** How high the origin of a robot's frame is above the ground. REP 105 lets base_link be anywhere
+ * on a robot: at its wheels, in its middle, at its LiDAR. So the map is asked: the ground is what
+ * was seen around the robot, not above the origin, connected, and may be driven upon. Looks from
+ * different places make it sure; then it stays. */
+class FrameHeight {
+ public:
+  /** The robot is there, and the ground is that of all scans until now. */
+  void look(const Ground& ground, const VehicleOptions& vehicle,
+            const Eigen::Isometry3d& T_map_robot);
+  /** Meters; 0 for less than the map can tell. None: no ground was seen yet. */
+  std::optional<double> meters() const;
+  /** A pose with the height of the ground below, as far as that is known. */
+  Eigen::Isometry3d onGround(const Eigen::Isometry3d& T_map_robot) const {
+    return T_map_robot * Eigen::Translation3d(0, 0, -meters().value_or(0));
+  }
+
+ private:
+  std::vector<double> m_heights;  ///< by looks from different places
+  Eigen::Vector3d m_lookedAt;     ///< the last time, map frame
 };
 
 }  // namespace semantic_planning
