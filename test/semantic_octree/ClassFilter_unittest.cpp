@@ -108,6 +108,20 @@ TEST(ClassFilter, onTheGridStatesNearlyWhatItDoesWithoutRounding) {
   EXPECT_LT(worst, 3e-3);
 }
 
+TEST(ClassFilter, fourthClassLeavesTheOccupancyExact) {
+  std::mt19937 random(3);
+  const ClassFilter<double> filter(24, wideLimits());
+  for (int stream = 0; stream < 200; ++stream) {
+    ClassBelief<double> belief = filter.uniform(0);
+    ExactFilter exact(24, wideLimits());
+    for (const ClassId id : {3, 9, 4, 3, 9, 3}) filter.hit(belief, id), exact.hit(id);
+    const auto fourth = static_cast<ClassId>(10 + random() % 15);
+    filter.hit(belief, fourth), exact.hit(fourth);
+    EXPECT_EQ(belief.count, 3);
+    EXPECT_NEAR(belief.occupancyLogOdds(24), exact.occupancyLogOdds(), 1e-12);
+  }
+}
+
 TEST(ClassFilter, evictsTheLeastLikelyClassAndOnATieTheLargestId) {
   const ClassFilter<double> filter(24, wideLimits());
   ClassBelief<double> belief = filter.uniform(0);
