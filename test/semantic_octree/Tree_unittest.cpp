@@ -5,6 +5,7 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/Keys.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "PlainMap.h"
