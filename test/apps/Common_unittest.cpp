@@ -134,8 +134,6 @@ class FigureTexts : public FolderTest {
   const fs::path m_before = fs::current_path();
 };
 
-}  // namespace
-
 TEST_F(FigureTexts, areDrawnAsTheyAreAndRunNothing) {
   for (const std::string& text : kTexts) {
     const std::string word = figures::gnuplotText(text);
@@ -166,8 +164,6 @@ TEST_F(FigureTexts, aScriptThatCannotBeDrawnLeavesNoFile) {
             "gnuplot could not draw");
   EXPECT_FALSE(fs::exists("a.png"));
 }
-
-namespace {
 
 using Eigen::Vector3d;
 

@@ -21,8 +21,6 @@ const char* const kPcdHead =
     "COUNT 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
     "VIEWPOINT 1 2 3 0.70710678 0 0 0.70710678\nPOINTS 2\nDATA ascii\n";
 
-}  // namespace
-
 TEST_F(Pcd, pointsComeBackInTheWorldAndTheSensorIsAtTheViewpoint) {
   const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 3 -1\n9 1 2 3.5 0\n");
   ClassTable table;
@@ -93,8 +91,6 @@ TEST_F(Pcd, onATerminalABarSaysHowFarTheConversionIs) {
   EXPECT_TRUE(contains(shown, "\r\033[K" + path("out.rawlog") + ": 1 scans"));
   EXPECT_FALSE(contains(runCommand(command).output, "Converting"));
 }
-
-namespace {
 
 /** Three beams, to the right, ahead and to the left: 2, 3 and 4 m. */
 const std::string kBeams = "0 -1.5707963 3.1415927 1.5707963 50 0.01 0 3 2 3 4 0 ";

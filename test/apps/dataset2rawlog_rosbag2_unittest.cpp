@@ -66,8 +66,6 @@ std::string messageOf(const std::string& arguments, const TemporaryFolder& folde
   return failureOf("rosbag2 " + arguments + " -o " + quoted(folder / "bad.rawlog"));
 }
 
-}  // namespace
-
 TEST_F(Rosbag2, mcapOfAnyCompressionHasTheScansAndWhereTheyWere) {
   for (const char* chunks : {"none", "", "zstd", "lz4"})
     for (const bool bigEndian : {false, true}) {
@@ -137,8 +135,6 @@ TEST_F(Rosbag2, topicsAreChosenWhereThereAreSeveral) {
   EXPECT_EQ(other[0].scan.cloud.size(), 2u);
   EXPECT_LT((other[0].inMap(0) - at(11, 0, 0, M_PI / 4) * Vector3d(1, 0, 0)).norm(), 1e-5);
 }
-
-namespace {
 
 constexpr std::uint32_t kWidth = 4;
 

@@ -81,8 +81,6 @@ double shareOccupiedIn(const SemanticOcTree& other, const SemanticOcTree& map) {
   return double(there) / occupied;
 }
 
-}  // namespace
-
 TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
   const TemporaryFolder folder;
   const std::string rawlog = (folder / "park.rawlog").string();
@@ -99,9 +97,8 @@ TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
                                 more)));
     return semantic_octree::loadTree(out + "/map.semantic");
   };
-  const SemanticOcTree trueMap = mapWith(folder / "park.tum", {}), wrong = mapWith(noisyFile, {}),
+  const SemanticOcTree trueMap = mapWith(folder / "park.tum", {}),
                        map = mapWith(noisyFile, {"--slam"});
-  EXPECT_LT(shareOccupiedIn(trueMap, wrong), 0.7);
   EXPECT_GT(shareOccupiedIn(trueMap, map), 0.8);
 
   const Poses corrected = readPoses(folder.read("out/trajectory.tum"));
@@ -121,8 +118,6 @@ TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
   EXPECT_LT(distance(corrected.rbegin()->second, at(truth)), 0.3);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "out"), {}), 5);
 }
-
-namespace {
 
 /** A drive along the village's street, and what is not known of it. */
 struct Street {

@@ -226,8 +226,6 @@ class LiveMapping : public Rawlog2SemanticMap {
   }
 };
 
-}  // namespace
-
 TEST_F(LiveMapping, ShowsTheMapScanByScanAndMakesTheSame) {
   SKIP_WITHOUT_WINDOWS();
   // In the panel at the upper left: "step", twice, and "pause", which lets it go on.
@@ -284,10 +282,6 @@ TEST_F(LiveMapping, IsNeededForAPause) {
   EXPECT_EQ(run.status, 64);
   EXPECT_TRUE(contains(run.errors, "--live"));
 }
-
-namespace fs = std::filesystem;
-
-namespace {
 
 /** The LiDAR scans of the shipped sample at their true poses. */
 std::vector<LabeledFrame> readSampleScans() {

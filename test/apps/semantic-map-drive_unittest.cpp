@@ -51,8 +51,6 @@ class SemanticMapDrive : public FolderTest {
   const std::string kConfig = std::string(MSO_SOURCE_DIR) + "/config/";
 };
 
-}  // namespace
-
 TEST_F(SemanticMapDrive, DrawsAnAnimationUnlessItIsNotWanted) {
   auto arguments = argumentsWith(
       {"--config", configWith("timeLimit = 3\n"), "--output", path("drive"), "--no-rawlog"});
@@ -107,8 +105,6 @@ TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
   EXPECT_EQ(run.status, 64);
   EXPECT_TRUE(contains(run.errors, "--start is required"));
 }
-
-namespace {
 
 const std::string kProgram = std::string(MSO_BIN_DIR) + "/semantic-map-drive";
 

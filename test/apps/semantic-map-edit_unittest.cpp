@@ -30,8 +30,6 @@ class SemanticMapEdit : public MapTool {
   }
 };
 
-}  // namespace
-
 TEST_F(SemanticMapEdit, timePassesForWhatHasAHalfLife) {
   expectRefusal(edit("map.semantic", "aged.semantic", {"--decay", "10"}),
                 {"has a half-life; --half-lives gives them"});
@@ -170,8 +168,6 @@ TEST_F(SemanticMapEdit, badInputIsRefused) {
   expectRefusal(edit("map.semantic", "no/folder.semantic"), {"folder.semantic"});
   EXPECT_FALSE(std::filesystem::exists(folder / "out.semantic"));
 }
-
-namespace {
 
 /** Ten maps of one scan each. */
 class SemanticMapMerge : public FolderTest {

@@ -71,8 +71,6 @@ bool anyIn(const SemanticOcTree& map, double x, double y, double low, double hig
   return false;
 }
 
-}  // namespace
-
 TEST_F(SemanticMapExport, pointsAreTheOccupiedLeavesWithWhatTheMapSaysThere) {
   ASSERT_EQ(exportTo({"map.ply"}).status, 0);
   const std::string ply = folder.read("map.ply");
@@ -240,8 +238,6 @@ TEST_F(SemanticMapExport, whatWasThereStaysIfAnythingFails) {
   EXPECT_EQ(folder.read("a.ply"), "of before");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
 }
-
-namespace {
 
 class ExportedOctrees : public MapTool {
  protected:

@@ -43,8 +43,6 @@ class SemanticMapPlan : public FolderTest {
   }
 };
 
-}  // namespace
-
 TEST_F(SemanticMapPlan, writesPathReportPictureAndScene) {
   succeeded(run("-8,0,0", "8,0,0"));
   EXPECT_EQ(report()["status"], "found");
@@ -131,8 +129,6 @@ TEST_F(SemanticMapPlan, badInputIsAnErrorThatNamesIt) {
   folder.write("map.semantic", "no map");
   expectError(run("-8,0,0", "8,0,0"), "map.semantic");
 }
-
-namespace {
 
 using namespace semantic_octree;
 

@@ -47,8 +47,6 @@ class Interrupted : public FolderTest {
   std::string rawlogs;
 };
 
-}  // namespace
-
 TEST_F(Interrupted, onceItWritesWhatIsThereAndSaysSo) {
   EXPECT_EQ(runAnd("kill -INT $pid"), 130) << log();
   EXPECT_TRUE(contains(log(), "will stop after this observation"));
@@ -87,8 +85,6 @@ TEST_F(Interrupted, killedItLeavesWhatTheNextRunRemoves) {
   EXPECT_FALSE(leftAnything());
 }
 
-namespace {
-
 /** Runs a program in the folder, asks it once to stop when it has begun its output, and waits.
  * \param meanwhile a command of the shell before that */
 ProgramRun stopEarly(const TemporaryFolder& folder, const std::string& command,
@@ -100,8 +96,6 @@ ProgramRun stopEarly(const TemporaryFolder& folder, const std::string& command,
                              "\nsleep 0.5\nkill -INT $pid\nwait $pid\n");
   return runCommand("sh " + (folder / "script").string());
 }
-
-}  // namespace
 
 TEST(StoppedEarly, aSyntheticDriveIsAShorterOne) {
   const TemporaryFolder folder;
@@ -143,8 +137,6 @@ TEST(WrittenMeanwhile, byOthersStaysAndTheResultIsKeptBesideIt) {
   EXPECT_EQ(stopEarly(folder, command + " -f", "echo theirs >a.rawlog").status, 130);
   EXPECT_TRUE(labeled_cloud::RawlogReader(folder / "a.rawlog").next());
 }
-
-namespace {
 
 /** How often: MSO_KILLS, or a few times. */
 int kills() {

@@ -1,11 +1,8 @@
 #include <colored_graph/ColoredAStar.h>
 #include <gtest/gtest.h>
-#include <mrpt/graphs/CDirectedGraph.h>
-#include <mrpt/graphs/dijkstra.h>
 #include <rapidcheck.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -88,22 +85,6 @@ TEST(ColoredAStar, equalsTupleDijkstraOnTenThousandRandomGraphs) {
   EXPECT_GT(found, 20000);
   EXPECT_GT(notFound, 5000);
   EXPECT_GT(zeroLength, 500);
-}
-
-TEST(ColoredAStar, equalsExactScalarization) {
-  for (unsigned seed = 0; seed < 1000; ++seed) {
-    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 23, seed % 67, 4);
-    if (seed % 2) plane.addTolls();
-    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
-    for (const CostModel& model : allModels(plane.randomOrder())) {
-      const auto expected = oracles::scalarShortest(plane.graph, model, start, goal);
-      const PathResult result = findColoredPath(plane.graph, start, goal, model);
-      ASSERT_EQ(result.found(), expected.has_value()) << "seed " << seed;
-      if (expected) {
-        ASSERT_TRUE(oracles::scalar(result.cost) == *expected) << "seed " << seed;
-      }
-    }
-  }
 }
 
 TEST(ColoredAStar, equalsTheBestOfAllSimplePaths) {
@@ -216,47 +197,6 @@ TEST(ColoredAStar, reachesAllNeighborsOfAVertexWithVeryManyEdges) {
   const CostModel model{ClassOrder(1, {{0}})};
   for (const VertexId v : {1u, 4095u, 4096u, 4097u, 19999u, 20000u})
     EXPECT_EQ(findColoredPath(graph, v, 2, model).cost, Tuple{v + 2});
-}
-
-namespace {
-
-struct LengthEdge {
-  double length = 0;
-};
-using MrptGraph = mrpt::graphs::CDirectedGraph<LengthEdge>;
-
-/** Of parallel edges the shortest: CDijkstra looks at one only. */
-MrptGraph shortestEdges(const ColoredGraph& graph) {
-  std::map<std::pair<VertexId, VertexId>, double> lengths;
-  for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
-    const Edge& edge = graph.edge(e);
-    if (edge.state != EdgeState::Usable) continue;
-    const double length = static_cast<double>(edge.length);
-    const auto known = lengths.emplace(std::minmax(edge.a, edge.b), length).first;
-    known->second = std::min(known->second, length);
-  }
-  MrptGraph mrptGraph;
-  for (const auto& [ends, length] : lengths)
-    mrptGraph.insertEdge(ends.first, ends.second, LengthEdge{length});
-  return mrptGraph;
-}
-
-}  // namespace
-
-TEST(MrptDijkstra, agreesOnLengthsWhereThereIsOneRank) {
-  for (unsigned seed = 0; seed < 100; ++seed) {
-    PlaneGraph plane = randomPlaneGraph(seed, 12, 90, 6);
-    const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0, 1, 2, 3, 4}})};
-    const MrptGraph mrptGraph = shortestEdges(plane.graph);
-    const auto length = [](const MrptGraph&, mrpt::graphs::TNodeID, mrpt::graphs::TNodeID,
-                           const MrptGraph::edge_t& edge) { return edge.length; };
-    const mrpt::graphs::CDijkstra<MrptGraph> tree(mrptGraph, 0, length);
-    for (VertexId goal = 1; goal < 12; ++goal) {
-      const PathResult result = findColoredPath(plane.graph, 0, goal, model);
-      ASSERT_TRUE(result.found()) << "seed " << seed;
-      EXPECT_EQ(result.cost.back(), tree.getNodeDistanceToRoot(goal)) << "seed " << seed;
-    }
-  }
 }
 
 TEST(ColoredAStar, boundsSaveExpansions) {

@@ -89,21 +89,6 @@ void changeAtRandom(ColoredGraph& graph, Reference& reference) {
   }
 }
 
-}  // namespace
-
-TEST(ColoredGraph, keepsWhatItIsGiven) {
-  const ColoredGraph graph = triangle();
-  EXPECT_EQ(graph.classes(), 3);
-  EXPECT_EQ(graph.vertexCount(), 3u);
-  EXPECT_EQ(graph.edgeCount(), 3u);
-  EXPECT_EQ(graph.vertexClass(2), 2);
-  EXPECT_EQ(graph.edge(1).length, 25);
-  EXPECT_EQ(graph.edge(1).profile[1].classId, 2);
-  EXPECT_EQ(graph.edge(1).state, EdgeState::Usable);
-  EXPECT_EQ(graph.edge(2).length, 30);
-  EXPECT_EQ(graph.edge(2).state, EdgeState::Unevaluated);
-}
-
 TEST(ColoredGraph, equalsSetsAndMapsAfterAnyChanges) {
   EXPECT_TRUE(rc::check([] {
     ColoredGraph graph(1);
@@ -153,17 +138,6 @@ TEST(ColoredGraph, keepsEveryKindOfContent) {
       for (EdgeId each = 0; each < 4; ++each) same(graph.edge(each), contents[each]);
     }
   }));
-}
-
-TEST(ColoredGraph, idsSurviveTheRemovalOfOthers) {
-  ColoredGraph graph = triangle();
-  graph.removeVertex(1);
-  EXPECT_EQ(graph.vertexClass(2), 2);
-  EXPECT_EQ(graph.edge(2).other(2), 0u);
-  EXPECT_FALSE(graph.containsVertex(1));
-  EXPECT_FALSE(graph.containsEdge(0));
-  EXPECT_FALSE(graph.containsEdge(1));
-  EXPECT_EQ(graph.incident(0).size(), 1u);
 }
 
 TEST(ColoredGraph, givesRemovedIdsOutAgainSoThatItDoesNotGrow) {
@@ -317,8 +291,6 @@ TEST(Length, refusesWhatIsNoLength) {
     EXPECT_THROW(lengthDown(meters), std::invalid_argument) << meters;
   }
 }
-
-namespace {
 
 /** The message of the exception that making this order throws. */
 std::string refusal(int classes, const std::vector<std::vector<GraphClass>>& bestToWorst) {

@@ -185,20 +185,6 @@ TEST(ColoredReplanner, expandsNothingWhenNothingChanged) {
   EXPECT_EQ(second.edges, first.edges);
 }
 
-TEST(ColoredReplanner, severalFollowTheSameGraph) {
-  PlaneGraph plane = town(5);
-  const auto models = allModels(plane.randomOrder());
-  std::vector<ColoredReplanner> replanners;
-  for (const CostModel& model : models)
-    replanners.emplace_back(plane.graph, 0, 1, model, boundedBy(plane));
-  for (int i = 0; i < 60; ++i) {
-    change(plane, 0, 1);
-    const std::size_t which = static_cast<std::size_t>(i) % models.size();
-    ASSERT_EQ(costOf(replanners[which].solve()),
-              oracles::tupleDijkstra(plane.graph, models[which], 0, 1));
-  }
-}
-
 TEST(ColoredReplanner, aReusedIdIsANewPlace) {
   // 0 - 1 - 2 on a line; vertex 1 moves far away under the same id and must not keep its old bound.
   ColoredGraph graph(1);

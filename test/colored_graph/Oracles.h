@@ -92,39 +92,6 @@ inline std::optional<Tuple> tupleDijkstra(const ColoredGraph& graph, const CostM
   return std::nullopt;
 }
 
-__extension__ typedef unsigned __int128 BigInt;
-constexpr int kDigitBits = 21;  // every component of every path stays below 2^21 in these tests
-
-/** sum of n_k B^k: for at most 6 components. */
-inline BigInt scalar(const Tuple& cost) {
-  BigInt value = 0;
-  for (const std::int64_t part : cost) value = (value << kDigitBits) + static_cast<BigInt>(part);
-  return value;
-}
-
-/** Bellman-Ford on the scalars. */
-inline std::optional<BigInt> scalarShortest(const ColoredGraph& graph, const CostModel& model,
-                                            VertexId start, VertexId goal) {
-  std::vector<std::optional<BigInt>> best(graph.vertexIdEnd());
-  best[start] = 0;
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (EdgeId e = 0; e < graph.edgeIdEnd(); ++e) {
-      if (!graph.containsEdge(e)) continue;
-      const auto relax = [&](VertexId from, VertexId to) {
-        const auto cost = edgeCost(graph, model, e, to);
-        if (!cost || !best[from]) return;
-        if (best[to] && *best[to] <= *best[from] + scalar(*cost)) return;
-        best[to] = *best[from] + scalar(*cost);
-        changed = true;
-      };
-      relax(graph.edge(e).a, graph.edge(e).b);
-      relax(graph.edge(e).b, graph.edge(e).a);
-    }
-  }
-  return best[goal];
-}
-
 /** The least cost over all simple paths, one by one. */
 inline void enumerate(const ColoredGraph& graph, const CostModel& model, VertexId v, VertexId goal,
                       const Tuple& cost, std::vector<bool>& used, std::optional<Tuple>& best) {

@@ -37,8 +37,11 @@ SemanticOcTree someMap() {
   return map;
 }
 
-/** What was read can be written, and read again. */
+/** What was read has the nodes that it says, can be written, and read again. */
 void expectSound(const SemanticOcTree& map) {
+  std::size_t nodes = 0;
+  for (auto node = map.begin_tree(); node != map.end_tree(); ++node) ++nodes;
+  if (nodes != map.size()) std::abort();
   std::istringstream in(semantic_octree::fileOf(map));
   if (!(semantic_octree::readTree(in) == map)) std::abort();
 }

@@ -87,8 +87,6 @@ class CloudLabelers : public testing::Test {
 
 using Classes = std::vector<ClassId>;
 
-}  // namespace
-
 TEST_F(CloudLabelers, givePointsInTheImageItsClassAndOthersNone) {
   auto labeler = make({{"front", 2}});
   labeler.addPicture(picture("front", 10));
@@ -179,8 +177,6 @@ TEST_F(CloudLabelers, refuseBadOptionsByName) {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3f;
-
-namespace {
 
 mrpt::img::TCamera camera(int cols = 320, int rows = 240, double f = 200) {
   mrpt::img::TCamera c;

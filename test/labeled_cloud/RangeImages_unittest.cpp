@@ -29,8 +29,6 @@ Vector3f pinhole(const DepthCamera& camera, double row, double col, double depth
       .cast<float>();
 }
 
-}  // namespace
-
 TEST(RangeImages, rangesAlongTheRayAreNoDepths) {
   const DepthCamera camera;
   auto obs = camera.see([](int, int) { return 2; });
@@ -245,8 +243,6 @@ TEST(Points3d, withoutPixelsCannotBeLabeledButCountForOccupancy) {
   EXPECT_EQ(convert(*obs).counts.points, 2u);
 }
 
-namespace {
-
 /** Points whose class is not that of the surface at their depth. */
 std::size_t bled(const LabeledScan& scan) {
   std::size_t wrong = 0;
@@ -254,8 +250,6 @@ std::size_t bled(const LabeledScan& scan) {
     wrong += scan.cloud.classes[i] != (scan.cloud.points[i].x() < 2 ? 1 : 2);
   return wrong;
 }
-
-}  // namespace
 
 TEST(Decimation, takesTheNearestPointOfEachBlockAndNoLabelBleeds) {
   const auto obs = poleBeforeWall(DepthCamera());
@@ -271,8 +265,6 @@ TEST(Decimation, takesTheNearestPointOfEachBlockAndNoLabelBleeds) {
     EXPECT_EQ(near, std::size_t(columns * ((40 + d - 1) / d))) << "decimation " << d;
   }
 }
-
-namespace {
 
 ScanConverterOptions withoutFlying() {
   ScanConverterOptions options;

@@ -64,8 +64,6 @@ std::vector<PosedCloud> firstOf(const std::vector<PosedCloud>& scans, std::size_
   return {scans.begin(), scans.begin() + static_cast<std::ptrdiff_t>(n)};
 }
 
-}  // namespace
-
 TEST(MapFolder, isTheMapInOnePieceToTheLastBit) {
   for (const Variant& v : kVariants) {
     SCOPED_TRACE(v.name);
@@ -129,8 +127,6 @@ TEST(MapFolder, staysWithinItsBudgetButForAScan) {
   EXPECT_LT(least, tiles.contents().tiles);
   EXPECT_TRUE(map.query(100, 100, 100).status == CellState::Status::Unknown);
 }
-
-namespace {
 
 /** Sees the most memory that a map has, also while a tile comes in. */
 class Watcher final : public NodeObserver, public NodeObserver::Worker {

@@ -124,8 +124,6 @@ std::vector<std::vector<double>> confusionOf(int scans, int voxels) {
   return calibrator.confusion(0.9);
 }
 
-}  // namespace
-
 TEST(Calibrator, makesTheTruthLikelierWhereVoxelsErrAsAWhole) {
   for (const double wrong : {0.3, 0.45}) {
     Floor floor(wrong, true);
@@ -144,8 +142,6 @@ TEST(Calibrator, leavesMapsSureWhoseLabelsErrOneByOne) {
   EXPECT_GE(calibration.power, 0.7);
   EXPECT_LT(floor.logLoss(map), 1.2 * before + 0.01);
 }
-
-namespace {
 
 /** Voxels in a row, one in ten of which is of class 2, the others of class 1. In each scan, two
  * in ten are taken for the other class. */
@@ -188,8 +184,6 @@ struct RowOfVoxels {
   Calibration calibration;
 };
 
-}  // namespace
-
 TEST(Calibrator, knowsWhichOfTwoClassesIsFrequentWhereLabelsErr) {
   RowOfVoxels row;
   const Calibration with = row.calibration;
@@ -202,8 +196,6 @@ TEST(Calibrator, knowsWhichOfTwoClassesIsFrequentWhereLabelsErr) {
 TEST(Calibrator, fitsNoFactorsWhereTheMapWasToldHowFrequentClassesAre) {
   EXPECT_TRUE(RowOfVoxels(std::vector<float>(kFloorClasses, 0.125f)).calibration.factors.empty());
 }
-
-namespace {
 
 /** A plain of fields of three classes, some of which are larger, seen by scans of some points a
  * voxel. Fields end within voxels. */

@@ -58,8 +58,6 @@ semantic_octree::AbstractionOptions keepRoads() {
   return options;
 }
 
-}  // namespace
-
 TEST(FullCells, AreTheLeavesAndAtADepthTheCubesAroundThem) {
   const SemanticOcTree map = randomMap(1);
   const FullCells cells(map);
@@ -131,8 +129,6 @@ TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
     }
   }
 }
-
-namespace {
 
 /** The box around all leaves, keys. */
 KeyBox boxAround(const SemanticOcTree& map) {

@@ -69,8 +69,6 @@ tree_abstraction::AlphaPath pathOf(const LiveCompression& live) {
   return tree_abstraction::AlphaPath(std::move(taus));
 }
 
-}  // namespace
-
 TEST(LiveCompression, CountsTheLeavesOfItsTree) {
   SemanticOcTree map = randomMap(51);
   LiveCompression live(map, LiveCompression::allClasses(map));
@@ -224,7 +222,6 @@ TEST(LiveCompression, RefusesContradictionsAndStaysAsItWas) {
   EXPECT_EQ(errorOf([&] { LiveCompression(empty, {}); }), "the map is empty");
 }
 
-namespace {
 using semantic_octree::Region;
 
 std::vector<AbstractionOptions> readAgain(const AbstractionOptions& solution) {

@@ -31,8 +31,6 @@ Eigen::Vector2d pixelOf(const OrbitCamera& camera, const Eigen::Vector3d& p) {
           kHeight / 2.0 - scale * to.dot(camera.up())};
 }
 
-}  // namespace
-
 TEST(OrbitCamera, SaysWhereAPlaceIsSeen) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> meters(-40, 40);
@@ -129,8 +127,6 @@ TEST(OrbitCamera, RefusesWhatIsNoCamera) {
                            "1,2,x,4,5,6", "nan,2,3,4,5,6", "1,2,3,inf,5,6"})
     EXPECT_NE(errorOf([&] { OrbitCamera::ofText(text); }), "") << text;
 }
-
-namespace {
 
 using namespace map_view;
 

@@ -82,8 +82,6 @@ std::set<Tile> tilesOf(const SemanticOcTree& map, int depth) {
   return tiles;
 }
 
-}  // namespace
-
 TEST(TileMesh, HasEachSideThatIsOpenOnceAndNoneThatIsHidden) {
   for (const unsigned seed : {31u, 32u}) {
     const SemanticOcTree map = randomMap(seed);
@@ -214,8 +212,6 @@ TEST(TileMesh, SidesThatLookAwayFromAPlaceAreNotSeenFromThere) {
   }
   EXPECT_GT(hidden, 50);
 }
-
-namespace {
 
 View viewFrom(double distance, double azimuth = -60) {
   View view;

@@ -56,8 +56,6 @@ struct Street {
   SemanticOcTree map;
 };
 
-}  // namespace
-
 TEST(StreetCalibration, ofAMapIsRight) {
   SKIP_WITHOUT_DATA("semantic_kitti");
   for (const char* sequence : {"00", "07"})
@@ -106,8 +104,6 @@ TEST(StreetCalibration, isNotWorseWithNeighborsWhateverIsWrongWithTheLabels) {
     EXPECT_GE(seen.accuracy(), own.accuracy() - 0.001) << name;
   }
 }
-
-namespace {
 
 using Counts = std::vector<std::vector<double>>;
 
@@ -158,8 +154,6 @@ double rightByVotesOfScans(const Street& street, LabelNoise noise,
   return right / points;
 }
 
-}  // namespace
-
 TEST(StreetCalibration, withAMeasuredMatrixIsRightAtLeastAsOftenAsBayesOfScanVotes) {
   SKIP_WITHOUT_DATA("semantic_kitti");
   for (const auto& [sequence, share] : {std::pair("00", 0.17), std::pair("07", 0.31)}) {
@@ -194,8 +188,6 @@ TEST(StreetCalibration, followsTheAccuracyThatLabelsAreSaidToHave) {
     EXPECT_LT(confident, modest) << sequence;
   }
 }
-
-namespace {
 
 /** Keeps the road and little else. */
 SemanticOcTree compressedFor(Street& street) {

@@ -31,8 +31,6 @@ MapQuality kittiQuality(const std::string& sequence) {
   return splitQuality(frames, table, kKittiResolution, kKittiRange);
 }
 
-}  // namespace
-
 TEST(MapAccuracy, evenScansOfAStreetAnswerTheOddOnes) {
   SKIP_WITHOUT_DATA("semantic_kitti");
   for (const char* sequence : {"00", "07"}) {
@@ -52,8 +50,6 @@ TEST(MapAccuracy, evenImagesOfAFlatAnswerTheOddOnes) {
   EXPECT_GE(quality.accuracy(), 0.98);
   EXPECT_GE(quality.coverage(), 0.92);
 }
-
-namespace {
 
 const std::filesystem::path kSources = MSO_SOURCE_DIR;
 

@@ -1,10 +1,7 @@
 #include <gtest/gtest.h>
-#include <map_correction/KeyframeMap.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_types/ClassTable.h>
-
-#include <random>
 
 #include "CountedLabels.h"
 #include "DataSets.h"
@@ -23,8 +20,6 @@ AbstractionOptions roadsNotPlants(const ClassTable& table) {
   o.blockSize = 3.2;
   return o;
 }
-
-}  // namespace
 
 TEST(StreetAbstraction, incrementalEqualsBatchAfterEveryScanAndPrunedEqualsUnpruned) {
   SKIP_WITHOUT_DATA("semantic_kitti");
@@ -52,54 +47,7 @@ TEST(StreetAbstraction, incrementalEqualsBatchAfterEveryScanAndPrunedEqualsUnpru
   EXPECT_LT(a.leaves().size(), pruned.getNumLeafNodes() / 5);
 }
 
-namespace {
-
-class CorrectedStreet : public testing::TestWithParam<const char*> {};
-
-/** Up to 0.5 m along each axis, and 2 degrees. */
-Eigen::Isometry3d perturbed(Eigen::Isometry3d T, std::mt19937& random) {
-  const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
-  const double angle = uniform() * 2 * M_PI / 180;
-  T.translation() += 0.5 * Eigen::Vector3d(uniform(), uniform(), uniform());
-  T.linear() *= Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  return T;
-}
-
-}  // namespace
-
-TEST_P(CorrectedStreet, isTheMapOfTheTruePosesToTheBit) {
-  const std::string sequence = std::string("semantic_kitti/") + GetParam();
-  SKIP_WITHOUT_DATA(sequence);
-  const auto table = shippedTable("semantic_kitti.yaml");
-  const auto frames = readSemanticKitti(sharedDataDir() / sequence, table);
-  SemanticOcTree map(0.2, table), expected(0.2, table);
-  AbstractionOptions abstraction;
-  abstraction.weights.terms = {tree_abstraction::relevant("1", 1, {1})};
-  abstraction.weights.alpha = 0.002;
-  setAbstraction(map, abstraction);
-  setAbstraction(expected, abstraction);
-  KeyframeMap keyframes(map);
-  InsertionOptions options;
-  options.maxRange = 30;
-  std::mt19937 random(2);
-  std::vector<KeyframePose> truth;
-  for (const LabeledFrame& frame : frames) {
-    truth.push_back({keyframes.begin(perturbed(frame.T_map_sensor, random)), frame.T_map_sensor});
-    keyframes.insert(frame.cloud, Eigen::Isometry3d::Identity(), options);
-    expected.insert(frame.cloud, frame.T_map_sensor, options);
-  }
-  EXPECT_FALSE(map == expected);
-  keyframes.move({truth.begin(), truth.begin() + 3});
-  EXPECT_FALSE(map == expected);
-  keyframes.move(truth);
-  EXPECT_TRUE(map == expected);
-}
-
-INSTANTIATE_TEST_SUITE_P(Sequences, CorrectedStreet, testing::Values("00", "07"));
-
 using mrpt::maps::COccupancyGridMap2D;
-namespace {
-
 struct RightPoints {
   int points = 0, right = 0;
   void add(bool isRight) { ++points, right += isRight; }

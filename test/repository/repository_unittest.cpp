@@ -56,8 +56,6 @@ class Repository : public testing::Test {
   }
 };
 
-}  // namespace
-
 TEST_F(Repository, librariesIncludeOnlyWhatTheirRowAllows) {
   EXPECT_EQ(forbiddenIncludes(root / "libs", includeTable(root / "doc/development.md")),
             Findings());
@@ -244,13 +242,7 @@ TEST_F(Repository, everyPackageIsListedOnce) {
   }
 }
 
-namespace {
-
-using Findings = std::vector<std::string>;
-
 const std::filesystem::path kRoot = MSO_SOURCE_DIR;
-
-}  // namespace
 
 TEST(Messages, thatTheHandbookExplainsAreThoseOfTheSources) {
   EXPECT_EQ(messagesNobodySays(kRoot / "doc/handbook/troubleshooting.md",
@@ -270,10 +262,6 @@ TEST(Messages, thatNobodySaysAreFound) {
   EXPECT_EQ(messagesNobodySays(folder / "file.md", {folder.path()}),
             (Findings{"file.md:5: has no bytes", "file.md:5: unknown key"}));
 }
-
-namespace fs = std::filesystem;
-
-namespace {
 
 const fs::path kSources = MSO_SOURCE_DIR;
 

@@ -44,8 +44,6 @@ semantic_types::LabeledCloud room() {
   return cloud;
 }
 
-}  // namespace
-
 TEST_F(RoadInGrass, hasAPathToAGoal) {
   start({"-p", "order:=" + order()});
   Heard<ros2::Path> paths(*live, "/plan");
@@ -65,8 +63,6 @@ TEST_F(RoadInGrass, hasAPathToAGoal) {
   EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "Goal: no path"); }));
   EXPECT_EQ(live->end(), kStopped);
 }
-
-namespace {
 
 /** A robot that does at once what it is told. */
 class DrivenRobot : public RoadInGrass {

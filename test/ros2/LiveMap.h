@@ -44,7 +44,6 @@ class LiveMap {
   /** Ends it as Ctrl-C does. \return its exit status */
   int end();
   bool isRunning() const;
-  int processId() const { return m_process; }
   /** What it wrote. */
   semantic_octree::SemanticOcTree map() const;
 

@@ -13,8 +13,6 @@ std::string problemOf(const std::vector<std::pair<std::string, std::string>>& va
   return errorOf([&] { readParameters({}, values); });
 }
 
-}  // namespace
-
 TEST(RosParameters, haveRosForms) {
   const TemporaryFolder folder;
   const auto ros = folder.write("ros.yaml", R"(
@@ -59,8 +57,6 @@ TEST(RosParameters, costsAreOfRanks) {
   options.costs = "0,101";
   EXPECT_TRUE(contains(errorOf([&] { options.costsOf(2); }), "'101'"));
 }
-
-namespace {
 
 ros2::Arguments argumentsOf(std::vector<std::string> words) {
   std::vector<char*> argv;

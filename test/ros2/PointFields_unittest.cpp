@@ -53,8 +53,6 @@ RawCloud rawOf(const std::vector<std::uint8_t>& data, std::vector<RawCloud::Fiel
 const std::vector<RawCloud::Field> kXyzLabel = {
     {"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"label", 12, 4}};
 
-}  // namespace
-
 TEST(PointFields, labelsAreRawIds) {
   Bytes bytes;
   bytes.add(1.0f).add(2.0f).add(3.0f).add(std::uint16_t(250));
@@ -126,8 +124,6 @@ TEST(PointFields, refuseWhatIsNoCloud) {
   EXPECT_TRUE(contains(refusal([](RawCloud& r) { r.width = r.height = r.rowStep = 4294967295u; }),
                        "bytes are no"));
 }
-
-namespace {
 
 /** The times of points with a field. \param fieldType sensor_msgs/PointField's number */
 template <class T>

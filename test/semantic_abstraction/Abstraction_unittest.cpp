@@ -163,10 +163,6 @@ TEST(Abstraction, refusesBadOptionsAndNamesThem) {
   EXPECT_FALSE(hasAbstraction(map));
 }
 
-}  // namespace
-
-namespace {
-
 // Classes of cells that stand for many voxels, free ones among them.
 
 constexpr int kNamedClasses = 3;  // all of them are named: nothing is truncated
@@ -211,8 +207,6 @@ AbstractionOptions keepingPosts() {
   options.blockSize = 3.2;
   return options;
 }
-
-}  // namespace
 
 TEST(CompressedClasses, ofACompressedCellAreThoseOfItsVoxelsInWhichLabelsWereSeen) {
   SemanticOcTree map = smallMap();
@@ -275,8 +269,6 @@ TEST(CompressedClasses, areStatedAsTheMapDoesWhereNoCellsAreMerged) {
   ASSERT_EQ(found.factors.size(), factors.size());
   EXPECT_NEAR(found.factors[1] / found.factors[0], 0.2, 0.1);
 }
-
-namespace {
 
 /** A floor of one class in whole cells of 8 voxels' edge, and what a scan of it says: some labels
  * are wrong, one by one. */

@@ -57,8 +57,6 @@ void forEachMap(const F& f) {
     }
 }
 
-}  // namespace
-
 TEST(AlphaTrees, haveWhatTheCompressedTreesOfTheirAlphasHave) {
   forEachMap([](Abstraction& abstraction) {
     const AlphaTrees trees(abstraction);
@@ -116,8 +114,6 @@ TEST(AlphaTrees, areOneTreeWhereNothingIsKnownOrCounts) {
   EXPECT_EQ(trees.full().relevant, 0);
   EXPECT_EQ(trees.full().leaves, static_cast<double>(map.getNumLeafNodes()));
 }
-
-namespace {
 
 constexpr int kLeafClasses = 3;
 constexpr double kLeafResolution = 0.2;

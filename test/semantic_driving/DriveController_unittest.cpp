@@ -4,14 +4,15 @@
 #include <mrpt/nav/reactive/CLogFileRecord.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_driving/DriveController.h>
+#include <semantic_driving/ObstacleSensing.h>
 #include <semantic_driving/ReactiveNavigator.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "CompressedInput.h"
 #include "ReactiveSystem.h"
+#include "TemporaryFolder.h"
 #include "simulated_drive/DriveConfig.h"
 
 using namespace semantic_driving;
@@ -21,10 +22,10 @@ namespace {
 
 const auto kRobotFootprint = semantic_planning::Footprint::rectangle(-0.25, 0.55, 0.6);
 
-ReactiveNavigator::Options robotIni() {
+ReactiveNavigator::Options optionsOf(const Footprint& footprint) {
   ReactiveNavigator::Options options;
   options.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
-  options.footprint = kRobotFootprint;
+  options.footprint = footprint;
   return options;
 }
 
@@ -60,15 +61,6 @@ std::vector<Eigen::Vector2d> person() {
   return columns;
 }
 
-ObstaclePoints seenFrom(const mrpt::math::TPose2D& pose, const ObstaclePoints& obstacles) {
-  ObstaclePoints seen;
-  for (const Eigen::Vector2d& o : obstacles) {
-    const mrpt::math::TPoint2D p = pose.inverseComposePoint({o.x(), o.y()});
-    seen.emplace_back(p.x, p.y);
-  }
-  return seen;
-}
-
 class Drive {
  public:
   Drive() : m_robot({0, 0, 0}, {}) { mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated); }
@@ -82,7 +74,7 @@ class Drive {
     const PathTracker outline({}, kRobotFootprint);
     for (int i = 0; i < 300; ++i) {
       mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
-      const ObstaclePoints seen = seenFrom(state().pose, columns);
+      const ObstaclePoints seen = seenFrom(columns, {}, state().pose, 100);
       m_collided = m_collided || !outline.isFree({}, seen, 1e-6);
       m_robot.drive(command(seen, 0.1 * i), 0.1);
     }
@@ -93,10 +85,8 @@ class Drive {
   bool m_collided = false;
 };
 
-}  // namespace
-
 TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
-  DriveController controller({}, robotIni());
+  DriveController controller({}, optionsOf(kRobotFootprint));
   controller.setPath(straight());
   Drive drive;
   int reactiveSteps = 0;
@@ -117,7 +107,7 @@ TEST(PathTracker, DoesNotSteerTheOtherWayAfterABend) {
     for (const double angle : {0.3, 0.8, 1.6, 2.5}) {
       DriveOptions options;
       options.maxSpeed = speed;
-      DriveController controller(options, robotIni());
+      DriveController controller(options, optionsOf(kRobotFootprint));
       controller.setPath(bend(1.1, angle));
       Drive drive;
       double least = 0, most = 0;
@@ -135,15 +125,8 @@ TEST(PathTracker, DoesNotSteerTheOtherWayAfterABend) {
     }
 }
 
-namespace fs = std::filesystem;
-
-namespace {
-
 ReactiveNavigator::Options optionsOf(double width) {
-  ReactiveNavigator::Options options;
-  options.config = std::string(MSO_SOURCE_DIR) + "/config/reactive/robot.ini";
-  options.footprint = Footprint::rectangle(0, 0.6, width);
-  return options;
+  return optionsOf(Footprint::rectangle(0, 0.6, width));
 }
 
 /** A wall across the straight way, 3 m ahead, with a gap of 0.9 m in the middle; map frame. */
@@ -164,18 +147,12 @@ bool getsThrough(const ReactiveNavigator::Options& options) {
   navigator.setWaypoints({goal}, 0.4);
   for (int i = 0; i < 150; ++i) {
     mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + 0.1 * i));
-    const auto seen = seenFrom(robot.state().pose, wallWithGap());
+    const auto seen = seenFrom(wallWithGap(), {}, robot.state().pose, 100);
     robot.drive(navigator.step(robot.state(), seen, 0.1 * i), 0.1);
     if (navigator.status() == ReactiveNavigator::Status::Arrived) return true;
   }
   return false;
 }
-
-/** A folder that is gone after the test. */
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("navlog-" + std::to_string(::getpid()));
-  ~Folder() { fs::remove_all(path); }
-};
 
 }  // namespace
 
@@ -230,11 +207,11 @@ TEST(ReactiveNavigator, CompletesTheFactorsThatNewerReleasesOfMrptWant) {
 }
 
 TEST(ReactiveNavigator, WritesALogThatMrptReads) {
-  const Folder folder;
+  const TemporaryFolder folder;
   ReactiveNavigator::Options options = optionsOf(0.2);
-  options.logFolder = folder.path;
+  options.logFolder = folder.path();
   EXPECT_TRUE(getsThrough(options));
-  CompressedInput file((folder.path / "log_000.reactivenavlog").string());
+  CompressedInput file((folder / "log_000.reactivenavlog").string());
   auto archive = mrpt::serialization::archiveFrom(file);
   int records = 0;
   double farthest = 0;

@@ -65,8 +65,6 @@ std::string faultOf(const std::string& lines) {
   }
 }
 
-}  // namespace
-
 TEST(DriveOptions, TheWayToRestIsLongEnoughForSlowVehicles) {
   for (const double acceleration : {0.15, 0.3, 0.6, 0.8, 2.0})
     EXPECT_LT(overshoot(acceleration), 0.1) << acceleration;
@@ -116,12 +114,6 @@ TEST(DriveOptions, AreReadFromTheirSections) {
   EXPECT_TRUE(config.slam.level);
 }
 
-TEST(DriveOptions, AreReadInMrptsWayOfWritingToo) {
-  const auto config = loaded("maxSpeed = 0.5\ncontrolPeriod = 0.05\n");
-  EXPECT_EQ(config.drive.maxSpeed, 0.5);
-  EXPECT_EQ(config.controlPeriod, 0.05);
-}
-
 TEST(DriveOptions, WhatTheVehicleAndTheMapSayTheyFollow) {
   DriveOptions options;
   options.setFor(4, 0.05);
@@ -150,8 +142,6 @@ TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {
       contains(faultOf("[movers]\nclasses = ghost\n"), "ini: MoverOptions: 'ghost' is no class"));
   EXPECT_TRUE(contains(faultOf("[sensors]\ncamera = no\nlidar = no\n"), "both off"));
 }
-
-namespace {
 
 constexpr double kPeriod = 0.1;  // s
 

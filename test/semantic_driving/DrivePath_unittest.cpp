@@ -27,8 +27,6 @@ PathTracker trackerOn(const std::vector<PathPoint>& points) {
   return tracker;
 }
 
-}  // namespace
-
 TEST(DrivePath, HasStretchesOfOneGear) {
   const DrivePath path(thereAndBack());
   EXPECT_NEAR(path.length(), 3, 1e-9);
@@ -88,8 +86,6 @@ TEST(PathTracker, TooNearToAnObstacleOnlyTheWayOutIsNoApproach) {
   EXPECT_FALSE(tracker.approaches({0.5, 0}, farOff, 0.05));
 }
 
-namespace {
-
 constexpr double kVoxel = 0.2, kToTheFront = 0.55, kClearance = 0.1;  // m
 
 /** Along x, `length` meters. */
@@ -125,8 +121,6 @@ PathJudgment judged(std::vector<double> perRank) {
 bool isBetter(const PathJudgment& path, const PathJudgment& other) {
   return path.isClearlyBetterThan(other);
 }
-
-}  // namespace
 
 TEST_F(OfAPath, TellsTheLengthOnEachRank) {
   const PathJudgment judgment = judge(alongX(12));
@@ -237,8 +231,6 @@ TEST(DrivenTrack, ForgetsWhatTheVehicleWentBackOnAndWhatIsLongAgo) {
   EXPECT_NEAR(back.length(), kept - 1, 0.2);
   EXPECT_NEAR(back.stretchEnd(0), back.length(), 1e-9);
 }
-
-namespace {
 
 constexpr double kLongest = 8;  // m backwards
 

@@ -45,8 +45,6 @@ double octile(const TPose2D& a, const TPose2D& b) {
   return std::max(x, y) + (std::sqrt(2.0) - 1) * std::min(x, y);
 }
 
-}  // namespace
-
 TEST_F(Frontiers, LieAtTheBorderOfWhatIsKnownAndApart) {
   const Exploration found = explore({30, 0, 0});
   ASSERT_EQ(found.frontiers.size(), 6u);
@@ -271,8 +269,6 @@ TEST_F(Frontiers, AGoalWithinWallsIsEnclosedOnAnAreaOfTheirs) {
 
 using namespace drive_study;
 using Eigen::Vector2d;
-
-namespace {
 
 constexpr double kHalf = 30, kFar = 60;  // m
 

@@ -299,9 +299,3 @@ TEST(GuideTransitions, WhateverHappensQuestionsEndAndTheVehicleGoesBackThreeTime
     }
   }));
 }
-
-TEST(GuideTransitions, TargetsHaveNames) {
-  EXPECT_STREQ(nameOf(doing(Recovering{}).target()), "recovery");
-  EXPECT_STREQ(nameOf(doing(GoingBack{}).target()), "back");
-  EXPECT_STREQ(nameOf(GuideState().target()), "none");
-}

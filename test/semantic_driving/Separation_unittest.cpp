@@ -142,8 +142,6 @@ Person crossing(std::mt19937& random) {
   return person;
 }
 
-}  // namespace
-
 TEST(Separation, WhoeverCrossesFromWhicheverSideFindsTheRobotAtRest) {
   Robot robot;
   std::mt19937 random(7);
@@ -206,8 +204,6 @@ TEST(Separation, TheSlowerTheNearerOneStands) {
   }
   EXPECT_EQ(before, 1.2);
 }
-
-namespace {
 
 constexpr double kAsideStep = 0.1;  // s
 

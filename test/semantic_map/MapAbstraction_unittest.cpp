@@ -21,14 +21,6 @@ TAbstractionOptions someOptions() {
   return o;
 }
 
-std::vector<std::pair<octomap::OcTreeKey, unsigned>> leavesOf(CSemanticOctoMap& map) {
-  std::vector<std::pair<octomap::OcTreeKey, unsigned>> leaves;
-  for (const auto& l : map.abstraction().leaves()) leaves.emplace_back(l.key(), l.depth);
-  return leaves;
-}
-
-}  // namespace
-
 TEST(MapAbstraction, comesFromTheIniFile) {
   const mrpt::config::CConfigFileMemory ini(
       "[m]\nsemanticOctoMap_count=1\n"
@@ -52,21 +44,6 @@ TEST(MapAbstraction, comesFromTheIniFile) {
   EXPECT_EQ(o.regions[2].weight, 2);
 }
 
-TEST(MapAbstraction, isCopiedArchivedAndGoesOn) {
-  CSemanticOctoMap map(0.2, threeClasses());
-  map.setAbstraction(someOptions());
-  fill(map);
-  CSemanticOctoMap copy(map), read;
-  readBytes(read, bytesOf(map));
-  ASSERT_GT(leavesOf(map).size(), 10u);
-  fill(map), fill(copy), fill(read);
-  for (CSemanticOctoMap* other : {&copy, &read}) {
-    EXPECT_TRUE(other->tree() == map.tree());
-    EXPECT_EQ(leavesOf(*other), leavesOf(map));
-    EXPECT_EQ(other->abstractionOptions().relevant, map.abstractionOptions().relevant);
-  }
-}
-
 TEST(MapAbstraction, compressedMapIsAMapWithTheSameOptions) {
   CSemanticOctoMap map(0.2, threeClasses());
   map.setAbstraction(someOptions());
@@ -74,7 +51,7 @@ TEST(MapAbstraction, compressedMapIsAMapWithTheSameOptions) {
   fill(map);
   const auto compressed = map.compress();
   EXPECT_EQ(compressed->insertionOptions.scan.maxRange, 4.5);
-  EXPECT_EQ(compressed->tree().getNumLeafNodes(), leavesOf(map).size());
+  EXPECT_EQ(compressed->tree().getNumLeafNodes(), map.abstraction().leaves().size());
   EXPECT_LT(compressed->tree().getNumLeafNodes(), map.tree().getNumLeafNodes());
 }
 
@@ -107,8 +84,6 @@ TEST(MapAbstraction, namesWhatIsWrong) {
 using mrpt::Clock;
 using semantic_map::ObservationClock;
 using semantic_octree::CellState;
-
-namespace {
 
 constexpr double kStart = 1.7e9;  // seconds
 

@@ -9,44 +9,6 @@ using namespace semantic_octree;
 
 namespace {
 
-/** Leaf of a voxel of the region. */
-struct LeafState {
-  unsigned depth;
-  bool hasRecord;
-};
-
-std::map<VoxelId, LeafState> leavesOfRegion(const SemanticOcTree& tree) {
-  std::map<VoxelId, LeafState> leaves;
-  for (auto leaf = tree.begin_leafs_bbx(keyOf({0, 0, 0}), keyOf({7, 7, 7}));
-       leaf != tree.end_leafs_bbx(); ++leaf) {
-    const octomap::OcTreeKey first = leaf.getIndexKey();
-    const int edge = std::min(8, edgeAtDepth(static_cast<int>(leaf.getDepth())));
-    for (int i = 0; i < edge * edge * edge; ++i)
-      leaves[voxelAt(first[0] + i % edge, first[1] + i / edge % edge, first[2] + i / edge / edge)] =
-          {leaf.getDepth(), leaf->hasClassRecord()};
-  }
-  return leaves;
-}
-
-/** What happened to the region's voxels. */
-struct Events {
-  int octantsWithRecord = 0, blocksWithRecord = 0, blocksWithout = 0;
-  int opened = 0, dropped = 0, recorded = 0;
-
-  void add(const std::map<VoxelId, LeafState>& before, const std::map<VoxelId, LeafState>& after) {
-    for (const auto& [id, leaf] : after) {
-      octantsWithRecord += leaf.depth == 15 && leaf.hasRecord;
-      blocksWithRecord += leaf.depth <= 14 && leaf.hasRecord;
-      blocksWithout += leaf.depth <= 14 && !leaf.hasRecord;
-      const auto old = before.find(id);
-      if (old == before.end()) continue;
-      opened += old->second.hasRecord && old->second.depth < leaf.depth;
-      dropped += old->second.hasRecord && !leaf.hasRecord;
-      recorded += !old->second.hasRecord && leaf.hasRecord;
-    }
-  }
-};
-
 bool isSameLeaf(const SemanticOcTree& tree, const SemanticOcTreeNode& a,
                 const SemanticOcTreeNode& b) {
   return b && b.isLeaf() && a.getLogOdds() == b.getLogOdds() &&
@@ -124,16 +86,12 @@ class Maps {
 };
 
 void expectPlainResult(unsigned seed, int classes, const FilterParameters& parameters,
-                       Events& events, int numScans = 40) {
+                       int numScans) {
   Maps maps(classes, parameters);
   BlockScans scans(seed, classes);
-  std::map<VoxelId, LeafState> leaves;
   for (int i = 0; i < numScans; ++i) {
     maps.insert(scans.next());
     maps.compare();
-    const auto after = leavesOfRegion(maps.pruned);
-    events.add(leaves, after);
-    leaves = after;
     if (testing::Test::HasFailure()) FAIL() << "seed " << seed << ", scan " << i;
   }
 }
@@ -141,20 +99,12 @@ void expectPlainResult(unsigned seed, int classes, const FilterParameters& param
 }  // namespace
 
 TEST(BlockInsertion, givesThePlainMapWhateverHappensToABlock) {
-  Events events;
-  for (unsigned seed = 1; seed <= 4; ++seed) expectPlainResult(seed, 3, {}, events);
-  EXPECT_GT(events.octantsWithRecord, 500);
-  EXPECT_GT(events.blocksWithRecord, 500);
-  EXPECT_GT(events.blocksWithout, 500);
-  EXPECT_GT(events.opened, 50);
-  EXPECT_GT(events.dropped, 500);
-  EXPECT_GT(events.recorded, 500);
+  for (unsigned seed = 1; seed <= 4; ++seed) expectPlainResult(seed, 3, {}, 40);
 }
 
 TEST(BlockInsertion, givesThePlainMapWithParametersAtTheirBounds) {
   FilterParameters p;
   p.hitProbability = p.maxProbability = 1 - 1e-9;
   p.falseAlarmProbability = p.minOccupancy = 1e-9;
-  Events events;
-  for (const int classes : {1, 24, 254}) expectPlainResult(20 + classes, classes, p, events, 15);
+  for (const int classes : {1, 24, 254}) expectPlainResult(20 + classes, classes, p, 15);
 }

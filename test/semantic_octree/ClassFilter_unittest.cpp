@@ -74,8 +74,6 @@ Deviation deviationAfterTwentyLabels(double accuracy) {
   return d;
 }
 
-}  // namespace
-
 TEST(ClassFilter, equalsTheExactFilterUntilAFourthClassIsSeen) {
   for (const int K : {1, 2, 3, 4, 24, 254})
     for (int distinct = 1; distinct <= 3; ++distinct) {
@@ -88,6 +86,26 @@ TEST(ClassFilter, inFloatEqualsTheExactFilterOnTheGridToTheLastBit) {
   for (const int K : {1, 2, 3, 4, 24, 254})
     for (const FilterParameters& parameters : {FilterParameters(), wideLimits()})
       EXPECT_EQ(largestDeviation<float>(K, 3, parameters), 0) << "K = " << K;
+}
+
+TEST(ClassFilter, onTheGridStatesNearlyWhatItDoesWithoutRounding) {
+  std::mt19937 random(8);
+  double sum = 0, worst = 0;
+  for (const int K : {2, 5, 24}) {
+    const ClassFilter<float> rounded(K, {});
+    const ClassFilter<double> exact(K, {});
+    for (int cell = 0; cell < 300; ++cell) {
+      ClassBelief<float> a = rounded.uniform(0);
+      ClassBelief<double> b = exact.uniform(0);
+      for (const Observation& z : randomStream(random, 100, K, 3)) {
+        apply(rounded, z, a), apply(exact, z, b);
+        const double change = totalVariation(distributionOf(a, K), distributionOf(b, K));
+        sum += change / (3 * 300 * 100), worst = std::max(worst, change);
+      }
+    }
+  }
+  EXPECT_LT(sum, 2e-4);
+  EXPECT_LT(worst, 3e-3);
 }
 
 TEST(ClassFilter, fourthClassLeavesTheOccupancyExact) {
@@ -128,34 +146,6 @@ TEST(ClassFilter, afterEvictionStaysNearTheExactFilter) {
   EXPECT_GT(at70.rightShare, 0.999);
   EXPECT_LT(at50.meanTotalVariation, 0.006);
   EXPECT_GT(at50.rightShare, at50.exactRightShare - 0.004);
-}
-
-TEST(ClassFilter, manyHitsOfAPoorClassifierKeepTheTrueClassApart) {
-  // With these each hit raises all classes; clamped one by one they would end up equal.
-  constexpr int K = 24;
-  const ClassFilter<float> filter(K, wideLimits(0.6));
-  ClassBelief<float> belief = filter.uniform(0);
-  std::mt19937 random(4);
-  for (int i = 0; i < 500; ++i)
-    filter.hit(belief, static_cast<ClassId>(i % 10 < 6 ? 5 : 1 + random() % K));
-  EXPECT_EQ(belief.ids[0], 5);
-  EXPECT_GT(distributionOf(belief, K)[5], 0.9);
-}
-
-TEST(ClassFilter, withoutClampingTheOrderDoesNotMatterToTheLastBit) {
-  FilterParameters gentle = wideLimits(0.5);
-  gentle.hitProbability = 0.55;
-  gentle.falseAlarmProbability = 0.45;
-  const ClassFilter<float> filter(4, gentle);
-  EXPECT_TRUE(rc::check([&](unsigned seed) {
-    std::mt19937 random(seed);
-    std::vector<Observation> stream = randomStream(random, 8, 4, 3);
-    ClassBelief<float> first = filter.uniform(0), second = first;
-    for (const Observation& z : stream) apply(filter, z, first);
-    std::shuffle(stream.begin(), stream.end(), random);
-    for (const Observation& z : stream) apply(filter, z, second);
-    RC_ASSERT(first == second);
-  }));
 }
 
 TEST(ClassFilter, keepsNamedClassesSortedAndWithinTheirLimits) {
@@ -215,27 +205,6 @@ TEST(ClassFilter, withoutRecordTakesTheSameValuesAsOnAUniformRecord) {
     ASSERT_NEAR(belief.occupancyLogOdds(24), value, 1 / 2048.) << "for ln 24 is rounded";
   }
 }
-
-TEST(ClassFilter, hitNeverLowersOccupancyWhereLabelsAgree) {
-  const ClassFilter<float> filter(24, {});
-  // The likeliest class at its limit: there the others' loss may take occupancy down to that limit.
-  const float highest = static_cast<float>(logit(FilterParameters().maxProbability));
-  EXPECT_TRUE(rc::check([&](unsigned seed) {
-    std::mt19937 random(seed);
-    ClassBelief<float> belief = filter.uniform(0);
-    for (const Observation& z : randomStream(random, 30, 24, 1)) {
-      const float before = belief.occupancyLogOdds(24);
-      apply(filter, z, belief);
-      const float after = belief.occupancyLogOdds(24);
-      if (z.kind == Observation::Kind::Miss)
-        RC_ASSERT(after <= before + 1e-6f);
-      else
-        RC_ASSERT(after >= std::min(before, highest) - 1e-6f);
-    }
-  }));
-}
-
-namespace {
 
 // The numbers of vectors.json were computed by an independent script from the filter's formulas.
 

@@ -1,11 +1,9 @@
 #pragma once
-#include <gtest/gtest.h>
 #include <semantic_octree/TreeFile.h>
 #include <zlib.h>
 
 #include <cstdint>
 #include <cstring>
-#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -84,33 +82,4 @@ struct Header {
 inline semantic_octree::SemanticOcTree treeOf(const std::string& file) {
   std::istringstream in(file);
   return semantic_octree::readTree(in);
-}
-
-/** Expects that content with bytes altered or missing is refused, or leads to a map that is sound.
- * \return how many were maps */
-inline int tryAlteredContent(const std::string& content) {
-  std::mt19937 random(1);
-  int maps = 0;
-  for (int round = 0; round < 3000; ++round) {
-    // Mostly near the beginning: what follows is then read in another way.
-    const std::size_t at =
-        random() % (round % 3 ? std::min<std::size_t>(500, content.size()) : content.size());
-    std::string altered = content;
-    if (round % 4 == 0)
-      altered.erase(at, 1 + random() % 8);
-    else
-      altered[at] = static_cast<char>(altered[at] ^ (1 + random() % 255));
-    try {
-      const semantic_octree::SemanticOcTree tree = treeOf(fileAround(altered));
-      ++maps;
-      std::size_t nodes = 0;
-      for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node) ++nodes;
-      EXPECT_EQ(nodes, tree.size());
-      std::ostringstream again;
-      writeTree(again, tree);
-      EXPECT_TRUE(treeOf(again.str()) == tree);
-    } catch (const std::runtime_error&) {
-    }
-  }
-  return maps;
 }

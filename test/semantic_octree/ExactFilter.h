@@ -1,5 +1,5 @@
 #pragma once
-#include <semantic_octree/LabelReliability.h>
+#include <semantic_octree/FilterParameters.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,11 +32,6 @@ class ExactFilter {
     m_miss = std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability));
   }
 
-  /** The labels of the next scan are of this accuracy and correlation. */
-  void trust(const semantic_octree::LabelReliability& labels) {
-    m_accuracy = labels.accuracy;
-    m_correlation = labels.correlation;
-  }
   void hit(int id) {
     for (int k = 1; k <= K(); ++k) m_h[k - 1] += rounded(k == id ? m_same : m_other);
     limit();

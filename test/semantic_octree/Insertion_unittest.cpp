@@ -50,8 +50,6 @@ void expectPlainResult(const std::vector<PosedCloud>& scans, const InsertionOpti
   EXPECT_LT(pruned.size(), unpruned.size());
 }
 
-}  // namespace
-
 TEST(Insertion, ofAnyScansGivesThePlainMapToTheLastBit) {
   struct Case {
     double maxRange = 0, minRange = 0, carvingMargin = 0;
@@ -83,8 +81,6 @@ TEST(Insertion, ofAnyScansGivesThePlainMapToTheLastBit) {
   }
 }
 
-namespace {
-
 /** Expects that an insertion is refused, saying so, and that the map is what it was. */
 void expectRefused(const std::string& words, const LabeledCloud& cloud,
                    const Eigen::Isometry3d& T_map_sensor = Eigen::Isometry3d::Identity(),
@@ -113,8 +109,6 @@ LabeledCloud threePoints() {
 Eigen::Isometry3d at(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
-
-}  // namespace
 
 TEST(BadInput, sensorOutsideTheMapIsRefused) {
   expectRefused("sensor at (4000, 0, 0) m", threePoints(), at(4000, 0, 0));
@@ -180,8 +174,6 @@ TEST(BadInput, treesThatCannotBeAreRefused) {
   EXPECT_TRUE(
       contains(errorOf([] { SemanticOcTree(0.1, ClassTable()); }), "number of classes is 0"));
 }
-
-namespace {
 
 // What single scans do that can be told by hand.
 

@@ -72,8 +72,6 @@ ClassTable agingTable() {
   return classes;
 }
 
-}  // namespace
-
 TEST(NodeObserver, isAskedWhereAMapChanges) {
   for (const bool pruning : {true, false}) {
     std::mt19937 random(4);
@@ -129,8 +127,6 @@ TEST(NodeObserver, isTheOnlyOneOfItsMapAndComparedWithItsKindAlone) {
   EXPECT_THROW(Abstraction{other}, std::logic_error);
   expectUpToDate(other);
 }
-
-namespace {
 
 // Another rule than the class filter, of which nothing else knows.
 

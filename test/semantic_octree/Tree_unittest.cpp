@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
+#include <map_operations/MapOperations.h>
 #include <octomap/OcTree.h>
 #include <rapidcheck.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/Keys.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "PlainMap.h"
@@ -30,8 +32,6 @@ void insertOne(SemanticOcTree& tree, unsigned seed, const InsertionOptions& opti
   const PosedCloud scan = randomScan(random);
   tree.insert(scan.cloud, scan.T_map_sensor, options);
 }
-
-}  // namespace
 
 TEST(Tree, copiesShareNothing) {
   SemanticOcTree original = treeOfScans(1);
@@ -126,8 +126,6 @@ TEST(Tree, pruningIsChosenWhileTheTreeIsEmpty) {
   EXPECT_FALSE(SemanticOcTree(tree).pruning());
 }
 
-namespace {
-
 /** RapidCheck draws the same cases in every run. */
 const int kSeedIsFixed = setenv("RC_PARAMS", "seed=20240517", 0);
 
@@ -161,8 +159,6 @@ int keyOfReturn(double voxelSize, double sensor, float point) {
     if (map.isNodeOccupied(*leaf)) return leaf.getKey()[0];
   return -1;
 }
-
-}  // namespace
 
 TEST(Keys, areThoseOfOctoMap) {
   EXPECT_TRUE(rc::check([] {
@@ -217,10 +213,7 @@ TEST(Keys, ofAnyCoordinateAreThoseThatScansFind) {
     });
 }
 
-namespace {
-
-// Iterators, against a walk without them. (OctomapConversion_unittest.cpp holds them against
-// OctoMap's.)
+// Iterators, against those of OctoMap. (OctomapConversion_unittest.cpp has the nodes of both.)
 
 constexpr double kVisitedResolution = 0.4;
 
@@ -235,6 +228,12 @@ SemanticOcTree someMap(bool pruning = true) {
   return map;
 }
 
+bool isLeafAt(const TreeIterator& at, const SemanticOcTree&) { return at.isLeaf(); }
+template <class Iterator>
+bool isLeafAt(const Iterator& at, const octomap::OcTree& tree) {
+  return !tree.nodeHasChildren(&*at);
+}
+
 /** What an iterator says where it stands. */
 struct Stop {
   octomap::OcTreeKey key, lowest;
@@ -242,32 +241,29 @@ struct Stop {
   double size, x, y, z;
   float value;
   bool isLeaf;
-
-  template <typename Iterator>
-  Stop(const Iterator& at, bool isNodeLeaf)
-      : key(at.getKey()),
-        lowest(at.getIndexKey()),
-        depth(at.getDepth()),
-        size(at.getSize()),
-        x(at.getX()),
-        y(at.getY()),
-        z(at.getZ()),
-        value(at->getLogOdds()),
-        isLeaf(isNodeLeaf) {}
-  Stop(const SemanticOcTreeNode& node, int cubeDepth, const std::array<int, 3>& first)
-      : depth(static_cast<unsigned>(cubeDepth)),
-        size(kVisitedResolution * edgeAtDepth(cubeDepth)),
-        value(node.getLogOdds()),
-        isLeaf(node.isLeaf()) {
-    const int half = edgeAtDepth(cubeDepth) / 2;
-    lowest = octomapKey(first[0], first[1], first[2]);
-    key = octomapKey(first[0] + half, first[1] + half, first[2] + half);
-    const auto center = [&](int axis) {
-      return (first[axis] - kKeyOfOrigin) * kVisitedResolution + size / 2;
-    };
-    x = center(0), y = center(1), z = center(2);
-  }
 };
+
+template <class Tree, class Iterator>
+std::vector<Stop> stops(const Tree& tree, Iterator at, const Iterator& end) {
+  std::vector<Stop> result;
+  for (; at != end; ++at)
+    result.push_back({at.getKey(), at.getIndexKey(), at.getDepth(), at.getSize(), at.getX(),
+                      at.getY(), at.getZ(), at->getLogOdds(), isLeafAt(at, tree)});
+  return result;
+}
+
+/** The stops whose cubes meet a box of keys. (OctoMap's own also visits some that touch it.) */
+std::vector<Stop> meeting(std::vector<Stop> stops, const octomap::OcTreeKey& low,
+                          const octomap::OcTreeKey& high) {
+  const auto isApart = [&](const Stop& stop) {
+    const int edge = edgeAtDepth(static_cast<int>(stop.depth));
+    for (unsigned axis = 0; axis < 3; ++axis)
+      if (stop.lowest[axis] > high[axis] || stop.lowest[axis] + edge - 1 < low[axis]) return true;
+    return false;
+  };
+  stops.erase(std::remove_if(stops.begin(), stops.end(), isApart), stops.end());
+  return stops;
+}
 
 void expectSameStops(const std::vector<Stop>& a, const std::vector<Stop>& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -284,70 +280,40 @@ void expectSameStops(const std::vector<Stop>& a, const std::vector<Stop>& b) {
   }
 }
 
-std::vector<Stop> stops(TreeIterator begin, const TreeIterator& end) {
-  std::vector<Stop> result;
-  for (; begin != end; ++begin) result.emplace_back(begin, begin.isLeaf());
-  return result;
-}
-
-/** What a walk stops at: nodes that meet a box of keys. */
-struct Walk {
-  int maxDepth;
-  bool innerNodes;
-  std::array<int, 3> low{0, 0, 0}, high{65535, 65535, 65535};
-  std::vector<Stop> stops = {};
-
-  void visit(const SemanticOcTreeNode& node, int depth, const std::array<int, 3>& first) {
-    const int edge = edgeAtDepth(depth);
-    if (!node) return;
-    for (int axis = 0; axis < 3; ++axis)
-      if (first[axis] > high[axis] || first[axis] + edge - 1 < low[axis]) return;
-    const bool isLast = node.isLeaf() || depth == maxDepth;
-    if (isLast || innerNodes) stops.emplace_back(node, depth, first);
-    for (int i = 0; i < 8 && !isLast; ++i)
-      visit(node.child(i), depth + 1,
-            {first[0] + (i & 1) * edge / 2, first[1] + (i >> 1 & 1) * edge / 2,
-             first[2] + (i >> 2) * edge / 2});
-  }
-};
-
-std::vector<Stop> walk(const SemanticOcTree& map, Walk walk) {
-  walk.visit(map.root(), 0, {0, 0, 0});
-  return walk.stops;
-}
-
 }  // namespace
 
-TEST(TreeIterator, visitsWhatAWalkVisitsInItsOrder) {
+TEST(TreeIterator, visitsWhatOctomapsDoInTheirOrder) {
   for (const bool pruning : {true, false}) {
     const SemanticOcTree map = someMap(pruning);
-    for (const int depth : {0, 16, 15, 14, 13, 9, 1}) {
-      const int last = depth == 0 ? 16 : depth;
-      const auto maxDepth = static_cast<unsigned>(depth);
-      expectSameStops(stops(map.begin_leafs(maxDepth), map.end_leafs()), walk(map, {last, false}));
-      expectSameStops(stops(map.begin_tree(maxDepth), map.end_tree()), walk(map, {last, true}));
+    const auto octree = toOcTree(map);
+    for (const unsigned char depth : {0, 16, 15, 14, 13, 9, 1}) {
+      expectSameStops(stops(map, map.begin_leafs(depth), map.end_leafs()),
+                      stops(*octree, octree->begin_leafs(depth), octree->end_leafs()));
+      expectSameStops(stops(map, map.begin_tree(depth), map.end_tree()),
+                      stops(*octree, octree->begin_tree(depth), octree->end_tree()));
     }
   }
 }
 
-TEST(TreeIterator, ofBoxesVisitsWhatAWalkVisits) {
+TEST(TreeIterator, ofBoxesVisitsOfOctomapsLeavesThoseThatMeetThem) {
   std::mt19937 random(6);
   const SemanticOcTree map = someMap();
+  const auto octree = toOcTree(map);
   for (int round = 0; round < 100; ++round) {
-    Walk wanted{round % 3 ? 16 : 12 + round % 5, false};
-    for (int axis = 0; axis < 3; ++axis) {
-      wanted.low[axis] = kKeyOfOrigin + static_cast<int>(between(random, -30, 20));
-      wanted.high[axis] = wanted.low[axis] + static_cast<int>(between(random, 0, 20));
+    octomap::OcTreeKey low, high;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      low[axis] = octomap::key_type(kKeyOfOrigin + between(random, -30, 20));
+      high[axis] = octomap::key_type(low[axis] + between(random, 0, 20));
     }
-    const auto &a = wanted.low, &b = wanted.high;
-    const octomap::OcTreeKey low = octomapKey(a[0], a[1], a[2]),
-                             high = octomapKey(b[0], b[1], b[2]);
-    const auto depth = static_cast<unsigned>(wanted.maxDepth);
-    const std::vector<Stop> expected = walk(map, wanted);
-    expectSameStops(stops(map.begin_leafs_bbx(low, high, depth), map.end_leafs_bbx()), expected);
-    expectSameStops(stops(map.begin_leafs_bbx(map.keyToCoord(low), map.keyToCoord(high), depth),
-                          map.end_leafs_bbx()),
+    const auto depth = static_cast<unsigned char>(round % 3 ? 16 : 12 + round % 5);
+    const auto expected =
+        meeting(stops(*octree, octree->begin_leafs(depth), octree->end_leafs()), low, high);
+    expectSameStops(stops(map, map.begin_leafs_bbx(low, high, depth), map.end_leafs_bbx()),
                     expected);
+    expectSameStops(
+        stops(map, map.begin_leafs_bbx(map.keyToCoord(low), map.keyToCoord(high), depth),
+              map.end_leafs_bbx()),
+        expected);
   }
   EXPECT_EQ(map.begin_leafs_bbx(octomap::point3d(1e6f, 0, 0), octomap::point3d(1, 1, 1)),
             map.end_leafs_bbx());

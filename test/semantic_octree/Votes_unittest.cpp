@@ -3,7 +3,6 @@
 #include <semantic_octree/ClassFilter.h>
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 
 #include "ExactFilter.h"
@@ -58,67 +57,6 @@ void expectExactVotes(int K, ExactFilter::Grid grid, std::mt19937& random) {
   }
 }
 
-bool hasFewer(const Votes::value_type& a, const Votes::value_type& b) {
-  return a.second < b.second;
-}
-
-constexpr int kPatchClasses = 24;
-
-/** Points on a plane of patches of different classes; this share of their labels is wrong. */
-LabeledCloud scanOfPatches(std::mt19937& random, double wrongShare) {
-  LabeledCloud cloud;
-  for (int i = 0; i < 4000; ++i) {
-    const double x = between(random, -4, 4), y = between(random, -4, 4);
-    const int patch = int(std::floor(x / 0.7)) * 7 + int(std::floor(y / 0.9)) * 5 + 240;
-    const bool wrong = between(random, 0, 1) < wrongShare;
-    const unsigned shift = wrong ? 1 + random() % (kPatchClasses - 1) : 0;
-    cloud.points.emplace_back(x, y, -0.9);
-    cloud.classes.push_back(static_cast<ClassId>(1 + (patch + shift) % kPatchClasses));
-  }
-  return cloud;
-}
-
-struct Answers {
-  double asked = 0, right = 0, rightCounted = 0;
-};
-
-/** Six scans with 30 percent of wrong labels, in a map and counted column by column; then asks both
- * for the classes of other points. */
-void askAboutPatches(std::mt19937& random, Answers& sum) {
-  SemanticOcTree map(0.2, numberedClasses(kPatchClasses));
-  std::map<std::pair<int, int>, Votes> counted;
-  const auto columnOf = [&](const Eigen::Vector3f& p) {
-    const auto key = map.coordToKey(p.x(), p.y(), p.z());
-    return std::make_pair(int(key[0]), int(key[1]));
-  };
-  for (int i = 0; i < 6; ++i) {
-    const LabeledCloud cloud = scanOfPatches(random, 0.3);
-    map.insert(cloud, Eigen::Isometry3d::Identity());
-    for (std::size_t k = 0; k < cloud.size(); ++k)
-      ++counted[columnOf(cloud.points[k])][cloud.classes[k]];
-  }
-  const LabeledCloud others = scanOfPatches(random, 0);
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    const Eigen::Vector3f& p = others.points[k];
-    const auto votes = counted.find(columnOf(p));
-    if (votes == counted.end()) continue;
-    const auto most = std::max_element(votes->second.begin(), votes->second.end(), hasFewer);
-    ++sum.asked;
-    sum.right += map.query(p.x(), p.y(), p.z()).likeliestClass == others.classes[k];
-    sum.rightCounted += most->first == others.classes[k];
-  }
-}
-
-}  // namespace
-
-TEST(Votes, thatTieLeaveTheChoiceToTheNextScan) {
-  const ClassFilter<float> filter(24, wideLimits(0.9));
-  ClassBelief<float> b = after(filter, {{3, 2}, {9, 2}});
-  EXPECT_EQ(b.logOddsOf(3), b.logOddsOf(9));
-  hit(filter, b, {{9, 1}});
-  EXPECT_EQ(b.ids[0], 9);
-}
-
 TEST(Votes, ofUpToThreeClassesEqualTheExactFilter) {
   std::mt19937 random(5);
   for (const int K : {2, 3, 4, 24}) {
@@ -165,25 +103,6 @@ TEST(Votes, ofTheOnlyClassAreItsHit) {
   EXPECT_TRUE(after(filter, {{1, 5}}) == labeled);
 }
 
-TEST(Votes, doNotDependOnTheOrderOfPoints) {
-  std::mt19937 random(4);
-  for (int round = 0; round < 5; ++round) {
-    const PosedCloud scan = randomScan(random);
-    std::vector<std::size_t> order(scan.cloud.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::shuffle(order.begin(), order.end(), random);
-    LabeledCloud shuffled;
-    for (const std::size_t i : order) {
-      shuffled.points.push_back(scan.cloud.points[i]);
-      shuffled.classes.push_back(scan.cloud.classes[i]);
-    }
-    SemanticOcTree a(0.5, numberedClasses(5)), b = a;
-    a.insert(scan.cloud, scan.T_map_sensor);
-    b.insert(shuffled, scan.T_map_sensor);
-    EXPECT_TRUE(a == b);
-  }
-}
-
 TEST(Votes, ofAScanAreAllLabelsThatEndInAVoxel) {
   const auto beliefAfter = [](const Votes& votes) {
     LabeledCloud cloud;
@@ -201,17 +120,6 @@ TEST(Votes, ofAScanAreAllLabelsThatEndInAVoxel) {
                              Votes{{3, 5}, {9, 1}}, Votes{{1, 1}, {3, 5}, {9, 7}, {24, 2}}})
     EXPECT_TRUE(beliefAfter(votes) == after(filter, votes)) << votes.size();
 }
-
-TEST(Votes, seeThroughThirtyPercentOfWrongLabelsAsCountingDoes) {
-  std::mt19937 random(6);
-  Answers sum;
-  for (int round = 0; round < 10; ++round) askAboutPatches(random, sum);
-  ASSERT_GT(sum.asked, 30000);
-  EXPECT_GE(sum.right / sum.asked, sum.rightCounted / sum.asked - 0.005)
-      << sum.right << " and " << sum.rightCounted << " of " << sum.asked;
-}
-
-namespace {
 
 /** Compares the filter with the exact one after each of some random soft labels of K <= 3 classes.
  */

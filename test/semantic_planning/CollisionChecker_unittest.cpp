@@ -158,23 +158,17 @@ class CollisionCheckerTest : public testing::Test {
 };
 
 TEST_F(CollisionCheckerTest, seesWhatADenseLookSees) {
-  for (int i = 0; i < 20000 && !HasFatalFailure(); ++i) {
-    const auto a = draw(), b = draw();
-    if (a && b && isNear(*a, *b)) expectAsDense(*a, *b);
+  for (const bool alongLinesOfVoxels : {false, true}) {
+    free = blocked = overcautious = 0;
+    for (int i = 0; i < 20000 && !HasFatalFailure(); ++i) {
+      const auto a = alongLinesOfVoxels ? drawAligned() : draw(),
+                 b = alongLinesOfVoxels ? drawAligned() : draw();
+      if (a && b && isNear(*a, *b)) expectAsDense(*a, *b);
+    }
+    EXPECT_GT(free, 500);
+    EXPECT_GT(blocked, 500);
+    EXPECT_LE(overcautious, blocked / 100);
   }
-  EXPECT_GT(free, 500);
-  EXPECT_GT(blocked, 500);
-  EXPECT_LE(overcautious, blocked / 100);
-}
-
-TEST_F(CollisionCheckerTest, seesWhatADenseLookSeesAlongLinesOfVoxels) {
-  for (int i = 0; i < 20000 && !HasFatalFailure(); ++i) {
-    const auto a = drawAligned(), b = drawAligned();
-    if (a && b && isNear(*a, *b)) expectAsDense(*a, *b);
-  }
-  EXPECT_GT(free, 500);
-  EXPECT_GT(blocked, 500);
-  EXPECT_LE(overcautious, blocked / 100);
 }
 
 TEST_F(CollisionCheckerTest, givesAnEdgeToItselfItsClass) {

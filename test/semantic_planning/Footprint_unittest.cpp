@@ -99,12 +99,6 @@ TEST(Footprint, inflatedHoldsThePointsThatAreNotFartherThanTheMarginBeyondAnySid
   }));
 }
 
-TEST(Footprint, theSidesOfADiamondMoveByTheMargin) {
-  const Footprint diamond({{1, 0}, {0, 1}, {-1, 0}, {0, -1}});
-  const Footprint inflated = diamond.inflated(0.1);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(inflated[i].norm(), 1 + 0.1 * M_SQRT2, 1e-12);
-}
-
 TEST(Footprint, aRectangleIsInflatedToTheBit) {
   const Corners corners = Footprint::rectangle(-0.25, 0.55, 0.6).inflated(0.1).corners();
   const double back = -0.25 - 0.1, front = 0.55 + 0.1, side = 0.3 + 0.1;

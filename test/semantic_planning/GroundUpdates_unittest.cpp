@@ -1,7 +1,6 @@
 // Ground that follows its map, and ground of parts of a map, against ground that is read anew.
 #include <gtest/gtest.h>
 #include <malloc.h>
-#include <map_correction/KeyframeMap.h>
 
 #include <algorithm>
 
@@ -115,41 +114,6 @@ TEST(Ground, withinSomeTilesDoesNotFollowChanges) {
   world.voxel(0, 0, 0, PaintedWorld::Wall);
   world.map();
   EXPECT_THROW(ground.update(follower.tiles()), std::logic_error);
-}
-
-TEST(Ground, followsKeyframesThatAreMovedAndRemoved) {
-  PaintedWorld world;
-  SemanticOcTree map(world.map().getResolution(), world.map().classes());
-  const GroundOptions filling;
-  semantic_octree::KeyframeMap keyframes(map);
-  semantic_octree::MapFollower follower = map.follow();
-  follower.skipTiles();
-  Ground ground = groundOf(map, VehicleOptions(), filling);
-  std::mt19937 random(4);
-  const auto slab = [&random](double height) {
-    semantic_types::LabeledCloud cloud;
-    for (double x = -4; x < 4; x += 0.1)
-      for (double y = -4; y < 4; y += 0.1) {
-        cloud.points.emplace_back(x, y, height + (random() % 9 == 0 ? 0.4 : 0));
-        cloud.classes.push_back(PaintedWorld::Road);
-      }
-    return cloud;
-  };
-  const auto expectFollowed = [&] {
-    ground.update(follower.tiles());
-    expectSame(ground, groundOf(map, VehicleOptions(), filling));
-  };
-  const Eigen::Isometry3d above(Eigen::Translation3d(0.05, 0.05, 2));
-  for (int i = 0; i < 3; ++i) {
-    keyframes.begin(Eigen::Isometry3d(Eigen::Translation3d(3 * i, 0, 0.3 * i)));
-    keyframes.insert(slab(-2), above);
-    expectFollowed();
-  }
-  keyframes.move({{1, Eigen::Isometry3d(Eigen::Translation3d(3, 0, 0))},
-                  {2, Eigen::Isometry3d(Eigen::Translation3d(6, 0, 0))}});
-  expectFollowed();
-  keyframes.remove(0);
-  expectFollowed();
 }
 
 TEST(Ground, aHoleThatNoBeamEnteredIsFilledAfterAnUpdateAsInTheGroundReadAnew) {

@@ -86,37 +86,6 @@ TEST(Ground, aSurfaceHasTheLikeliestClassOfItsVoxel) {
     }
 }
 
-TEST(Ground, clearanceIsTheDistanceToTheNearestColumnWithoutFreeGround) {
-  PaintedWorld world;
-  std::mt19937 random(5);
-  std::vector<std::vector<bool>> free(40, std::vector<bool>(40, true));
-  for (int i = 0; i < 40; ++i) free[random() % 40][random() % 40] = false;
-  for (int x = 0; x < 40; ++x)
-    for (int y = 0; y < 40; ++y)
-      if (free[x][y] || (x + y) % 2) {  // what is not free is a hole or a pillar
-        world.voxel(x, y, -1, PaintedWorld::Road);
-        for (int z = 0; z < 8 && !free[x][y]; ++z) world.voxel(x, y, z, PaintedWorld::Wall);
-      }
-  VehicleOptions vehicle = smallVehicle();
-  vehicle.clearance = 0.8;
-  const Ground ground = groundOf(world.map(), vehicle);
-  const int farthest = ground.largestClearance();
-  for (int x = 0; x < 40; ++x)
-    for (int y = 0; y < 40; ++y) {
-      if (!free[x][y]) continue;
-      int nearest = farthest * farthest;
-      for (int u = -1; u <= 40; ++u)
-        for (int v = -1; v <= 40; ++v) {
-          const bool outside = u < 0 || v < 0 || u >= 40 || v >= 40;
-          const int dx = std::max(0, std::abs(u - x) - 1), dy = std::max(0, std::abs(v - y) - 1);
-          if (outside || !free[u][v]) nearest = std::min(nearest, dx * dx + dy * dy);
-        }
-      const Surface* s = ground.near({kOrigin + x, kOrigin + y}, kOrigin - 1, 0);
-      ASSERT_NE(s, nullptr);
-      EXPECT_EQ(s->clearance2, nearest) << x << ' ' << y;
-    }
-}
-
 TEST(Ground, steepGroundIsNotDrivable) {
   const auto drivable = [](double slope, double limit) {
     PaintedWorld world(0.1);

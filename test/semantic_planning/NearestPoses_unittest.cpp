@@ -65,11 +65,6 @@ class NearestPosesTest : public testing::Test {
 
 }  // namespace
 
-TEST_F(NearestPosesTest, areThoseOfBruteForceWhenInsertedAtOnce) {
-  replace(0, 300);
-  expectLikeBruteForce();
-}
-
 TEST_F(NearestPosesTest, areThoseOfBruteForceWhilePosesComeAndGo) {
   replace(0, 60);
   for (int round = 0; round < 6; ++round)

@@ -28,18 +28,6 @@ void expectSame(const TPose2D& a, const TPose2D& b, double tolerance) {
 
 }  // namespace
 
-TEST(ReedsShepp, theCurveLeadsFromPoseToPoseInTheLengthOfTheDistance) {
-  const ReedsShepp shepp(1.7);
-  RandomPoses pose;
-  for (int i = 0; i < 2000; ++i) {
-    const TPose2D a = pose(), b = pose();
-    const ReedsSheppCurve curve = shepp.connect(a, b);
-    expectSame(curve.at(0).pose, a, 1e-9);
-    expectSame(curve.at(curve.length()).pose, b, 1e-5);
-    EXPECT_NEAR(curve.length(), shepp.distance(a, b), 1e-9);
-  }
-}
-
 TEST(ReedsShepp, theReversedCurveGoesThroughTheSamePosesInTheOtherGear) {
   const ReedsShepp shepp(1.2);
   RandomPoses pose;

@@ -41,8 +41,6 @@ std::size_t shared(const Numbers& l, const Numbers& r) {
   return std::count_if(l.begin(), l.end(), [&](const auto& pose) { return r.count(pose) > 0; });
 }
 
-}  // namespace
-
 class RepeatedPlansTest : public PlannerTest {
  protected:
   double coordinate() { return double(m_random() % 260) / 10 - 13; }
@@ -145,8 +143,6 @@ TEST_F(RepeatedPlansTest, theSamePosesComeAgainUnlessTheyBelongToTheTask) {
       EXPECT_LT(shared(before, now), 10u);
   }
 }
-
-namespace {
 
 class SlicedPlansTest : public PlannerTest {
  protected:

@@ -49,17 +49,6 @@ TEST_F(PlannerTest, replanningGoesAroundMudThatAppearsOnTheRoad) {
   EXPECT_EQ(after.cost, costFromScratch(p, options, order, after));
 }
 
-TEST_F(PlannerTest, replanningGoesAroundAWallThatAppears) {
-  paintCorner();
-  SemanticPlanner p = planner();
-  ASSERT_TRUE(p.plan(start, goal).found());
-  world.box(-13, -7, 0, 0.4, 0, 2, PaintedWorld::Wall).map();
-  p.update();
-  const PlanResult after = p.replan(start);
-  expectDrivable(after);
-  EXPECT_EQ(after.cost, costFromScratch(p, options, order, after));
-}
-
 TEST_F(PlannerTest, aMovingStartKeepsTheBestPath) {
   paintCorner();
   SemanticPlanner p = planner();

@@ -226,14 +226,6 @@ TEST_F(PlannerTest, moreVerticesHaveMoreNeighbors) {
   EXPECT_GT(edgesPerVertex(2000), 1.4 * edgesPerVertex(1000));  // 16 neighbors, and 10
 }
 
-TEST_F(PlannerTest, planningTwiceGivesTheSamePath) {
-  paintCorner();
-  const PlanResult a = plan(), b = plan();
-  ASSERT_EQ(a.path.size(), b.path.size());
-  EXPECT_EQ(a.cost, b.cost);
-  for (std::size_t i = 0; i < a.path.size(); ++i) EXPECT_EQ(a.path[i].x, b.path[i].x);
-}
-
 TEST_F(PlannerTest, verticesAndEdgesStayWithinTheirBudgets) {
   paintCorner();
   for (const GraphKind kind : {GraphKind::Compressed, GraphKind::HaltonDrivable, GraphKind::Full}) {

@@ -24,8 +24,6 @@ class IcpSlam : public StockApps {
   std::string rawlog;
 };
 
-}  // namespace
-
 TEST_F(IcpSlam, aRealLaserScannerMakesASemanticOctree) {
   const ProgramRun slammed = slam("config/stock-apps/icp-slam.ini", Plugin::Preloaded);
   ASSERT_EQ(slammed.status, 0) << slammed.output;
@@ -59,8 +57,6 @@ TEST_F(IcpSlam, aMisspelledOptionStopsItWithTheReason) {
   EXPECT_TRUE(contains(slammed.output, "maxRnage"));
 }
 
-namespace {
-
 class RbpfSlam : public StockApps {
  protected:
   void SetUp() override {
@@ -73,8 +69,6 @@ class RbpfSlam : public StockApps {
   }
 };
 
-}  // namespace
-
 TEST_F(RbpfSlam, eachParticleBuildsWeighsAndCopiesASemanticOctree) {
   const ProgramRun slammed = slam();
   ASSERT_EQ(slammed.status, 0) << slammed.output;
@@ -86,8 +80,6 @@ TEST_F(RbpfSlam, eachParticleBuildsWeighsAndCopiesASemanticOctree) {
   EXPECT_GT(check.pointsInOccupied, 0.8);
   EXPECT_GT(check.occupiedAtPoints, 0.98);
 }
-
-namespace {
 
 class PfLocalization : public StockApps {
  protected:
@@ -116,8 +108,6 @@ Estimate lastEstimate(const std::string& output) {
 /** The end of the path, which MRPT's own tests know: (15.904, -10.010) m, 4.93 degrees. */
 double distanceToEnd(const Estimate& e) { return std::hypot(e.x - 15.904, e.y + 10.010); }
 
-}  // namespace
-
 TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding) {
   const ProgramRun localized = localize();
   ASSERT_EQ(localized.status, 0) << localized.output;
@@ -126,8 +116,6 @@ TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding)
   EXPECT_LT(distanceToEnd(end), 0.3);
   EXPECT_NEAR(end.degrees, 4.93, 2);
 }
-
-namespace {
 
 class Observations2Map : public StockApps {
  protected:
@@ -169,8 +157,6 @@ double shareOfLabelsIn(const semantic_octree::SemanticOcTree& map) {
   return all > 1000 ? same / all : 0;
 }
 
-}  // namespace
-
 TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
   const ProgramRun made = make();
   ASSERT_EQ(made.status, 0) << made.output;
@@ -193,8 +179,6 @@ TEST_F(Observations2Map, theSceneShowsTheClasses) {
 }
 
 using labeled_cloud::CObservationLabeledCloud;
-
-namespace {
 
 class RawlogEdit : public StockApps {
  protected:

@@ -99,8 +99,6 @@ double shareOf(const cv::Mat& screen, const semantic_types::Color& color) {
 
 constexpr semantic_types::Color kGrass{138, 196, 84}, kCanopy{26, 112, 48};
 
-}  // namespace
-
 TEST_F(Viewers, rawLogViewerListsLabeledCloudsAndWithoutThePluginStopsAtTheFirst) {
   cutVillage();
   const cv::Point nowhere(300, 560);
@@ -130,8 +128,6 @@ TEST_F(Viewers, sceneViewer3DShowsAMapsSceneInItsClassesColors) {
   EXPECT_GT(shareOf(screen, kGrass), 0.02);
   EXPECT_GT(shareOf(screen, kCanopy), 0.01);
 }
-
-namespace {
 
 /** The shell commands of a page, as one script: what stands between "```console" and "```".
  * Commands that other tests of this folder run, for they take long or need a display, are left out.

@@ -44,8 +44,6 @@ std::string refusal(const std::map<std::string, std::string>& keys) {
   return errorOf([&] { optionsOf(keys); });
 }
 
-}  // namespace
-
 TEST(IniSection, keysThatAreAbsentLeaveTheirOptionAsItIs) {
   const Options options = optionsOf({{"length", "4"}});
   EXPECT_EQ(options.length, 4);
@@ -105,8 +103,6 @@ TEST(IniText, holdsNothingThatMrptWouldLeaveOut) {
 
 using strict_files::StrictYaml;
 
-namespace {
-
 /** Reads options from a YAML file in which other keys are errors. */
 class YamlOptions : public testing::Test {
  protected:
@@ -128,8 +124,6 @@ class YamlOptions : public testing::Test {
 
   const TemporaryFolder folder;
 };
-
-}  // namespace
 
 TEST_F(YamlOptions, areReadFromAMap) {
   const auto options =
@@ -188,8 +182,6 @@ using some::Color;
 using strict_files::Option;
 using strict_files::OptionList;
 
-namespace {
-
 /** What setting an option to this text fails with; empty: it does not. */
 std::string refusal(const std::string& name, const std::string& text) {
   Options options;
@@ -207,28 +199,6 @@ TEST(OptionList, anOptionIsFoundHoweverItsWordsAreParted) {
     EXPECT_EQ(list.find(name)->name, "max_gap");
   }
   EXPECT_FALSE(list.find("maximal_gap"));
-}
-
-TEST(OptionList, textsAreOfEachKind) {
-  Options options;
-  const OptionList list = OptionList::of(options);
-  std::vector<std::string> texts;
-  for (const Option& option : list.options()) texts.push_back(option.text());
-  EXPECT_EQ(texts, (std::vector<std::string>{"2", "inf", "3", "7", "true", "false", "green",
-                                             "a title", "none", "1, 2, 3"}));
-}
-
-TEST(OptionList, whatIsAllowedIsSaidInWords) {
-  Options options;
-  const OptionList list = OptionList::of(options);
-  const auto expected = [&](const char* name) { return list.find(name)->expected; };
-  EXPECT_EQ(expected("length"), "a number above 0 up to 10");
-  EXPECT_EQ(expected("max_gap"), "a number of 0 or more, or infinite");
-  EXPECT_EQ(expected("count"), "a whole number of 1 or more");
-  EXPECT_EQ(expected("small"), "a whole number from 0 to 255");
-  EXPECT_EQ(expected("on"), "true or false");
-  EXPECT_EQ(expected("color"), "one of dark_red, green");
-  EXPECT_EQ(expected("floor"), "a number below 5, or none");
 }
 
 TEST(OptionList, endsOfARangeAreAllowedOrNot) {

@@ -28,8 +28,7 @@ inline std::filesystem::path saveNearestColorNetwork(const std::filesystem::path
   net.constant("w", {table.size(), 3, 1, 1}, weights);
   net.constant("b", {table.size()}, biases);
   net.node("Conv", {"image", "w", "b"}, "scores",
-           {SmallOnnx::list("kernel_shape", {1, 1}), SmallOnnx::list("strides", {1, 1}),
-            SmallOnnx::list("pads", {0, 0, 0, 0})});
+           {{"kernel_shape", {1, 1}}, {"strides", {1, 1}}, {"pads", {0, 0, 0, 0}}});
   return net.save(file, {1, 3, rows, cols}, {1, table.size(), rows, cols});
 }
 

@@ -27,11 +27,9 @@ std::string valueInfo(const std::string& name, const SmallOnnx::Shape& shape) {
 }
 
 std::string encode(const SmallOnnx::Attribute& a) {
-  constexpr int kInt = 2, kString = 3, kInts = 7;
+  constexpr int kInts = 7;
   std::string bytes = field(1, a.name);
-  if (!a.text.empty()) return bytes + field(4, a.text) + field(20, kString);
-  if (!a.isList) return bytes + field(3, a.ints[0]) + field(20, kInt);
-  for (const auto value : a.ints) bytes += field(8, value);
+  for (const auto value : a.values) bytes += field(8, value);
   return bytes + field(20, kInts);
 }
 

@@ -9,23 +9,11 @@ class SmallOnnx {
  public:
   using Shape = std::vector<std::int64_t>;
 
-  /** An attribute of a node. */
+  /** A list of numbers that belongs to a node. */
   struct Attribute {
     std::string name;
-    std::vector<std::int64_t> ints;  ///< one: an integer
-    std::string text;                ///< if not empty: a string
-    bool isList = true;
+    Shape values;
   };
-
-  static Attribute number(const std::string& name, std::int64_t value) {
-    return {name, {value}, "", false};
-  }
-  static Attribute list(const std::string& name, const Shape& values) {
-    return {name, values, "", true};
-  }
-  static Attribute word(const std::string& name, const std::string& text) {
-    return {name, {}, text, false};
-  }
 
   void constant(const std::string& name, const Shape& shape, const std::vector<float>& values);
   void node(const std::string& op, const std::vector<std::string>& inputs,

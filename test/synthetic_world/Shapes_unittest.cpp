@@ -129,11 +129,6 @@ using V2 = Eigen::Vector2d;
 
 const std::vector<V2> kRing{{-20, -10}, {25, -14}, {30, 12}, {0, 20}, {-22, 14}};
 
-TEST(Curve, roundedSquareHasTheLengthOfItsStraightsAndArcs) {
-  const Curve curve({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 2, true);
-  EXPECT_NEAR(curve.length(), 4 * 6 + 2 * M_PI * 2, 1e-12);
-}
-
 TEST(Curve, headingIsTheDirectionOfMotionAndHasNoKink) {
   const Curve curve(kRing, 6, true);
   const double h = 1e-5;
@@ -197,15 +192,6 @@ TEST(Polygon, distancesEqualThoseOfDenseSamples) {
     EXPECT_NEAR(distance(a, q), toPoint, 0.08) << trial;
   }
 }
-
-TEST(Polygon, distanceIsZeroInsideAndWhereOneHoldsTheOther) {
-  const Polygon big = rectangle({0, 0}, 0.3, 4, 3), small = rectangle({0.2, 0.1}, 1.0, 1, 0.5);
-  EXPECT_EQ(distance(big, V2(0.3, 0.3)), 0);
-  EXPECT_EQ(distance(big, small), 0);
-  EXPECT_EQ(distance(small, big), 0);
-}
-
-using V = Eigen::Vector3d;
 
 /** The ground along a ray by small steps and bisection; independent of cells. */
 std::optional<double> marchedGround(const World& world, const V& o, const V& d, double maxRange) {

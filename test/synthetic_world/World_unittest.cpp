@@ -186,37 +186,6 @@ TEST(Terrain, beyondTheEdgeTheEdgesHeightGoesOn) {
   EXPECT_EQ(terrain.height(3, -41), terrain.height(3, -40));
 }
 
-TEST(Terrain, normalStandsUprightOnTheSlope) {
-  const Terrain flat(10, {});
-  EXPECT_EQ(flat.normal(1, 2), Eigen::Vector3d::UnitZ());
-  const Terrain terrain(40, kHills);
-  const Eigen::Vector3d n = terrain.normal(5.5, -3.5);
-  const Eigen::Vector3d alongX(0.5, 0, terrain.height(5.75, -3.5) - terrain.height(5.25, -3.5));
-  EXPECT_NEAR(n.dot(alongX), 0, 1e-12);
-  EXPECT_NEAR(n.norm(), 1, 1e-12);
-}
-
-TEST(Terrain, raysEnterACellWhereMarchingFindsTheGround) {
-  const Terrain terrain(40, kHills);
-  Random random(5);
-  int met = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const Eigen::Vector3d target(random.uniform(10, 11), random.uniform(-7, -6), 0);
-    const Eigen::Vector3d o =
-        target + Eigen::Vector3d(random.uniform(-2, 2), random.uniform(-2, 2), 4);
-    const Eigen::Vector3d d =
-        (target + Eigen::Vector3d(0, 0, random.uniform(-3, 3)) - o).normalized();
-    const auto entry = terrain.enter(50, 33, o, d, 0, 8);
-    if (!entry) continue;
-    const Eigen::Vector3d p = o + *entry * d;
-    if (p.x() < 10 || p.x() > 11 || p.y() < -7 || p.y() > -6)
-      continue;  // the cell's surface goes on
-    ++met;
-    EXPECT_NEAR(p.z(), terrain.height(p.x(), p.y()), 1e-9);
-  }
-  EXPECT_GT(met, 300);
-}
-
 class EveryScene : public testing::TestWithParam<std::tuple<std::string, int>> {
  protected:
   Scene scene = makeScene(std::get<0>(GetParam()), std::get<1>(GetParam()));
@@ -273,11 +242,6 @@ TEST(Scene, badNamesAndHillsAreRefused) {
   EXPECT_EQ(errorOf([] { makeScene("moon", 1); }),
             "scene: no scene 'moon'; there are: village, park, campus");
   EXPECT_EQ(errorOf([] { makeScene("park", 1, 3); }), "scene: hills is 3.000000, 0 to 2 expected");
-}
-
-TEST(Scene, driveRefusesToStandStill) {
-  const Scene scene = makeScene("park", 1);
-  EXPECT_THROW(Drive(scene, 0), std::invalid_argument);
 }
 
 TEST(Scene, walkerGoesToAndFro) {

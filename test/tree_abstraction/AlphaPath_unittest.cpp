@@ -43,8 +43,6 @@ std::size_t count(const std::vector<char>& mask) {
   return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), char{true}));
 }
 
-}  // namespace
-
 TEST(AlphaPath, treesAreNestedAndEachIsTheOptimumAtItsAlpha) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Engine random(seed);
@@ -96,8 +94,6 @@ TEST(AlphaPath, aTreeThatNeverPaysIsItsRoot) {
   EXPECT_EQ(path.treeOf(-1), 1u);
 }
 
-namespace {
-
 /** Distinct positive taus, ascending. */
 std::vector<double> breakpoints(std::vector<double> tau) {
   std::sort(tau.begin(), tau.end());
@@ -137,8 +133,6 @@ std::vector<char> optimumOf(const std::vector<std::int32_t>& parents,
   }
   return mask;
 }
-
-}  // namespace
 
 TEST(CollapseAlphas, equalsTheSearchAtEveryAlpha) {
   const Shape shapes[] = {
@@ -217,8 +211,6 @@ TEST(CollapseAlphas, rejectsWhatIsNoForest) {
   EXPECT_THROW(collapseAlphas({-1}, {1}, {kNan}), std::invalid_argument);
   EXPECT_THROW(collapseAlphas({-1}, {1}, {kInfinity}), std::invalid_argument);
 }
-
-namespace {
 
 /** Many of them agree, some but for rounding, some in chains; some are infinite, 0 or below. */
 std::vector<double> someTaus(std::mt19937& random, std::size_t number) {

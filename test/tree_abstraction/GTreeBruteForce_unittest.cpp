@@ -50,8 +50,6 @@ Tally checkShape(const Shape& shape, int numSeeds) {
   return tally;
 }
 
-}  // namespace
-
 TEST(GTreeSearch, agreesWithBruteForce) {
   struct Case {
     const char* name;
@@ -75,8 +73,6 @@ TEST(GTreeSearch, agreesWithBruteForce) {
     EXPECT_GE(tally.expandedPartly, c.expandedPartly);
   }
 }
-
-namespace {
 
 /** G(n) of the paper, not divided by p(n): the most that subtrees of n add to J. From the values of
  * whole trees alone. \param above the interior nodes on the way to n */

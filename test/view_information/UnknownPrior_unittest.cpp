@@ -45,8 +45,6 @@ struct TwoSides {
   }
 };
 
-}  // namespace
-
 TEST(UnknownPrior, withoutALearnedOneWeightsBringNothing) {
   for (const ClassId relevant : {kRoad, kGrass}) {
     TwoSides sides(relevant);
@@ -148,8 +146,6 @@ TEST(UnknownPrior, whatStandsOnGroundIsExpectedOnSuchGround) {
 }
 
 using semantic_types::LabeledCloud;
-
-namespace {
 
 tree_abstraction::AbstractionWeights roadMatters() {
   tree_abstraction::AbstractionWeights weights;
