@@ -247,15 +247,18 @@ struct Plain {
     }
     return cloud;
   }
-  bool hasFactors(double wrong, bool asDisks, int scans, int pointsOfVoxel) {
-    SemanticOcTree map = Floor(0, true).map();
-    Calibrator calibrator(1, kFloorClasses);
-    for (int i = 0; i < scans; ++i) {
-      const LabeledCloud cloud = scan(wrong, asDisks, pointsOfVoxel);
-      calibrator.add(cloud, Eigen::Isometry3d::Identity());
-      map.insert(cloud, Eigen::Isometry3d::Identity());
-    }
-    return !calibrator.fit(map).factors.empty();
+  /** Mean of -ln p(true class | occupied). */
+  double logLoss(const SemanticOcTree& map) const {
+    double loss = 0, points = 0;
+    for (double x = 0.25; x < kEdge; x += 0.5)
+      for (double y = 0.25; y < kEdge; y += 0.5) {
+        const SemanticOcTreeNode leaf = map.search(map.coordToKey(x, y, -2.5));
+        if (!leaf || !leaf.hasClassRecord()) continue;
+        const auto p = map.distribution(leaf);
+        loss -= std::log(p[classAt(x, y)] / (1 - p[0]));
+        ++points;
+      }
+    return loss / points;
   }
 
   std::mt19937& random;
@@ -265,16 +268,35 @@ struct Plain {
 
 }  // namespace
 
-TEST(Calibrator, tellsLabelsThatErrFromBordersWithinVoxels) {
+TEST(Calibrator, statesFactorsIfTheyMakeTheTruthLikelierAndNoneOfRightLabels) {
   std::mt19937 random(3);
+  int withFactors = 0;
   for (int i = 0; i < 8; ++i) {
     Plain plain(random);
     const int scans = 3 + i % 4, points = 1 + i % 3;
-    const auto name = std::to_string(i) + ": fields of " + std::to_string(plain.period[0]);
-    EXPECT_FALSE(plain.hasFactors(0, false, scans, points)) << name;
-    EXPECT_TRUE(plain.hasFactors(0.15, false, scans, points)) << name;
-    EXPECT_TRUE(plain.hasFactors(0.15, true, scans, points)) << name;
+    for (const auto& [wrong, asDisks] : {std::pair(0.0, false), {0.15, false}, {0.15, true}}) {
+      SemanticOcTree map = Floor(0, true).map();
+      Calibrator calibrator(1, kFloorClasses);
+      for (int s = 0; s < scans; ++s) {
+        const LabeledCloud cloud = plain.scan(wrong, asDisks, points);
+        calibrator.add(cloud, Eigen::Isometry3d::Identity());
+        map.insert(cloud, Eigen::Isometry3d::Identity());
+      }
+      const auto lossAfterFit = [&](SemanticOcTree asked) {
+        asked.setCalibration(calibrator.fit(asked));
+        return plain.logLoss(asked);
+      };
+      SemanticOcTree told = map, has = map;
+      told.setClassPrior(std::vector<float>(kFloorClasses, 0.125f));
+      has.setCalibration({1, 0, std::vector<double>(kFloorClasses, 1.0)});
+      const double without = lossAfterFit(told), with = lossAfterFit(has);
+      EXPECT_LE(lossAfterFit(map), 1.05 * (wrong > 0 ? std::min(with, without) : without)) << i;
+      const bool hasFactors = !calibrator.fit(map).factors.empty();
+      EXPECT_FALSE(wrong == 0 && hasFactors) << i;
+      withFactors += hasFactors;
+    }
   }
+  EXPECT_GE(withFactors, 14);
 }
 
 TEST(Calibrator, leavesWhatFewScansSaw) {
