@@ -329,7 +329,11 @@ TEST(LabelProcess, findsTheFrequentOfTwoClassesThatAreTakenForEachOther) {
 
 TEST(Calibrator, makesSumsAsCautiousAsTheMostCautiousOfTheirMaps) {
   Floor floor(0, true);
-  SemanticOcTree a = floor.map(), b = floor.map();
+  SemanticOcTree a = floor.map(), b = floor.map(), withoutLabels = floor.map();
+  LabeledCloud cloud = floor.scan();
+  for (SemanticOcTree* map : {&a, &b}) map->insert(cloud, Eigen::Isometry3d::Identity());
+  cloud.classes.clear();
+  withoutLabels.insert(cloud, Eigen::Isometry3d::Identity());
   a.setCalibration({0.5, 0.1});
   b.setCalibration({0.8, 0.3});
   for (const auto& maps : {std::vector<const SemanticOcTree*>{&a, &b}, {&b, &a}}) {
@@ -346,4 +350,6 @@ TEST(Calibrator, makesSumsAsCautiousAsTheMostCautiousOfTheirMaps) {
   b.setCalibration({});
   for (const auto& maps : {std::vector<const SemanticOcTree*>{&a, &b}, {&b, &a}})
     EXPECT_TRUE(merged(maps).filterParameters().calibration.factors.empty());
+  EXPECT_EQ(merged({&a, &withoutLabels}).filterParameters().calibration.factors.size(), 8U);
+  EXPECT_EQ(merged({&withoutLabels, &a}).filterParameters().calibration.factors.size(), 8U);
 }
