@@ -123,9 +123,19 @@ SemanticOcTree emptySumOf(const std::vector<const SemanticOcTree*>& maps) {
   return sum;
 }
 
+/** A map without labels, of which there is nothing to calibrate. */
+bool saysNothingOfClasses(const SemanticOcTree* map) {
+  if (!map->filterParameters().calibration.isIdentity()) return false;
+  auto leaf = map->begin_leafs();
+  while (leaf != map->end_leafs() && !leaf->hasClassRecord()) ++leaf;
+  return leaf == map->end_leafs();
+}
+
 /** The lowest power, the largest share, and the factors next to 1: the same however sums are
  * grouped. */
-Calibration mostCautious(const std::vector<const SemanticOcTree*>& maps) {
+Calibration mostCautious(std::vector<const SemanticOcTree*> maps) {
+  maps.erase(std::remove_if(maps.begin(), maps.end(), saysNothingOfClasses), maps.end());
+  if (maps.empty()) return {};
   Calibration calibration{1, 0, maps.front()->filterParameters().calibration.factors};
   std::vector<double>& factors = calibration.factors;
   for (const SemanticOcTree* map : maps) {
