@@ -142,10 +142,8 @@ class SlamEngine {
   using Stretch = std::pair<std::size_t, std::size_t>;  ///< first and last keyframe
   /** Each has half of its keyframes in common with the next one. */
   static std::vector<Stretch> stretchesOf(const Part& part);
-  /** Where what a stretch saw fits best. \param guess of its last keyframe */
-  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes,
-                                      const Eigen::Vector3d& guess,
-                                      const PlaneSearch::Window& window);
+  /** Where what a stretch saw fits best. */
+  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes);
 
   // --- Loops and the reference ---
   bool closeLoops();

@@ -116,7 +116,7 @@ bool SlamEngine::joinPiece() {
   const bool isLargest = all[0].back() == newest;
   const std::size_t length = std::min(newest - *m_piece, kSearched);
   const Places places = placesOf(all[isLargest]);
-  const auto found = findStretch(places, {newest - length, newest}, places.middle, places.window);
+  const auto found = findStretch(places, {newest - length, newest});
   if (!found) return false;
   std::vector<PoseEdge> finds{*found};
   if (m_pendingPiece && agree(*m_pendingPiece, *found)) finds.push_back(*m_pendingPiece);
@@ -180,25 +180,12 @@ std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part)
   const std::vector<Stretch> stretches = stretchesOf(part);
   std::vector<PoseEdge> finds, most;
   for (const Stretch& stretch : stretches)
-    if (const auto found = findStretch(places, stretch, places.middle, places.window))
-      finds.push_back(*found);
+    if (const auto found = findStretch(places, stretch)) finds.push_back(*found);
   for (const PoseEdge& find : finds) {
     std::vector<PoseEdge> alike{find};
     for (const PoseEdge& other : finds)
       if (agree(find, other)) alike.push_back(other);
     if (alike.size() > most.size()) most = alike;
-  }
-  if (most.size() < 2) return most;
-  // Where the others are is known then.
-  const PoseEdge known = most.front();
-  const Pose T_moved = T_map_b(known) * m_poses[known.b].inverse();
-  for (const Stretch& stretch : stretches) {
-    const std::size_t k = stretch.second;
-    const auto isFound = [k](const PoseEdge& e) { return e.b == k; };
-    if (std::any_of(most.begin(), most.end(), isFound)) continue;
-    const double way = std::abs(m_keyframes[k].way - m_keyframes[known.b].way);
-    const auto found = findStretch(places, stretch, flatOf(T_moved * m_poses[k]), windowAfter(way));
-    if (found && agree(known, *found)) most.push_back(*found);
   }
   return most;
 }
@@ -220,9 +207,7 @@ auto SlamEngine::placesOf(const Part& part) const -> Places {
           {box.sizes().maxCoeff() / 2, M_PI}};
 }
 
-std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes,
-                                                const Eigen::Vector3d& guess,
-                                                const PlaneSearch::Window& window) {
+std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes) {
   const std::size_t last = keyframes.second;
   const Seen stretch = pointsOf(keyframes.first, last, last);
   const PlanePoints searched =
@@ -230,7 +215,7 @@ std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stre
   PlanePoints some;
   const std::size_t every = 1 + searched.size() / kMostPoints;
   for (std::size_t i = 0; i < searched.size(); i += every) some.push_back(searched[i]);
-  const auto found = places.search.find(some, guess, window, kFoundScore);
+  const auto found = places.search.find(some, places.middle, places.window, kFoundScore);
   m_report.twofold += found && !found->isAlone;
   if (!found || !found->isAlone) return std::nullopt;
   const Pose T_map = poseOfFlat(found->pose);
