@@ -290,6 +290,19 @@ TEST(Planar, aRobotThatWasCarriedIsFoundAgain) {
       << warningsOf(slam);
 }
 
+TEST(Planar, aPieceThatALaterLossLeavesBehindIsFoundInTheEnd) {
+  const Recording whole = recordingOf("village", 1, laserOf(), 120, kFlat);
+  Recording r = recordingOf("village", 1, laserOf(), 40, kFlat);
+  append(r, whole, 80, 100);  // nothing of it was seen yet
+  append(r, whole, 10, 110);
+  Slam slam({});
+  addAll(slam, r, kRobotLaser);
+  slam.finish();
+  EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.3);
+  EXPECT_EQ(slam.report().torn, 2u);
+  EXPECT_EQ(slam.report().joined, 2u);
+}
+
 TEST(Planar, logsOfTwoPlacesAreSaidToBeApart) {
   Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
   append(r, recordingOf("park", 4, laserOf(), kDriven, kFlat), 0, 60);

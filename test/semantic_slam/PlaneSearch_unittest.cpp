@@ -42,43 +42,77 @@ class Oracle {
  public:
   Oracle(const PlanePoints& others, const PlanePoints& scan, const Eigen::Vector3d& guess)
       : m_scan(scan), m_guess(guess), m_corner(others.front()) {
-    for (const Eigen::Vector2d& p : others) m_corner = m_corner.cwiseMin(p);
-    m_corner.array() -= 4 * kCell;
-    for (const Eigen::Vector2d& p : others) m_cells.push_back(cellOf(p));
-  }
-  int scoreOf(int angle, int x, int y) const {
-    const Eigen::Rotation2Dd turn(m_guess[2] + angle * kStep);
-    int score = 0;
-    for (const Eigen::Vector2d& p : m_scan) {
-      const Eigen::Array2i cell = cellOf(turn * p + m_guess.head<2>()) + Eigen::Array2i(x, y);
-      int best = 0;
-      for (const Eigen::Array2i& other : m_cells) {
-        const Eigen::Array2i off = cell - other;
-        if (off.abs().maxCoeff() > 3) continue;
-        const double squared = off.matrix().squaredNorm();
-        best = std::max(best, static_cast<int>(std::lround(255 * std::exp(-squared / 2 / 1.44))));
-      }
-      score += best;
+    Eigen::Vector2d high = m_corner;
+    for (const Eigen::Vector2d& p : others) {
+      m_corner = m_corner.cwiseMin(p);
+      high = high.cwiseMax(p);
     }
-    return score;
+    m_corner.array() -= 4 * kCell;
+    m_size = cellOf(high) + 5;
+    m_scores.resize(static_cast<std::size_t>(m_size.prod()));
+    for (const Eigen::Vector2d& p : others)
+      for (int i = 0; i < 49; ++i) {
+        const Eigen::Array2i off(i % 7 - 3, i / 7 - 3), at = cellOf(p) + off;
+        const double squared = off.matrix().squaredNorm();
+        int& score = m_scores[static_cast<std::size_t>(at.y() * m_size.x() + at.x())];
+        score = std::max(score, static_cast<int>(std::lround(255 * std::exp(-squared / 2 / 1.44))));
+      }
   }
+  int scoreOf(int angle, int x, int y) const { return scoreOf(cellsAt(angle), {x, y}); }
   int bestWithin(int radius, int angles) const {
     int best = 0;
-    for (int a = -angles; a <= angles; ++a)
+    for (int a = -angles; a <= angles; ++a) {
+      const auto cells = cellsAt(a);
       for (int x = -radius; x <= radius; ++x)
-        for (int y = -radius; y <= radius; ++y) best = std::max(best, scoreOf(a, x, y));
+        for (int y = -radius; y <= radius; ++y) best = std::max(best, scoreOf(cells, {x, y}));
+    }
     return best;
   }
 
  private:
+  using Cells = std::vector<Eigen::Array2i>;
+  Cells cellsAt(int angle) const {
+    const Eigen::Rotation2Dd turn(m_guess[2] + angle * kStep);
+    Cells cells;
+    for (const Eigen::Vector2d& p : m_scan) cells.push_back(cellOf(turn * p + m_guess.head<2>()));
+    return cells;
+  }
+  int scoreOf(const Cells& cells, const Eigen::Array2i& moved) const {
+    int score = 0;
+    for (const Eigen::Array2i& cell : cells) {
+      const Eigen::Array2i at = cell + moved;
+      if ((at >= 0).all() && (at < m_size).all())
+        score += m_scores[static_cast<std::size_t>(at.y() * m_size.x() + at.x())];
+    }
+    return score;
+  }
   Eigen::Array2i cellOf(const Eigen::Vector2d& p) const {
     return ((p - m_corner).array() / kCell).floor().cast<int>();
   }
   PlanePoints m_scan;
   Eigen::Vector3d m_guess;
   Eigen::Vector2d m_corner;
-  std::vector<Eigen::Array2i> m_cells;
+  Eigen::Array2i m_size;
+  std::vector<int> m_scores;
 };
+
+/** \param radius cells of the window \param angles steps of it */
+void expectTheBest(const PlanePoints& others, const PlanePoints& scan, const Eigen::Vector3d& guess,
+                   int radius, int angles) {
+  const Oracle oracle(others, scan, guess);
+  const int best = oracle.bestWithin(radius, angles);
+  const PlaneSearch search(others, kCell);
+  const PlaneSearch::Window window{(radius - 0.5) * kCell, (angles - 0.5) * kStep};
+  const double share = best / (255. * static_cast<double>(scan.size()));
+  const auto found = search.find(scan, guess, window, share - 0.01);
+  ASSERT_TRUE(found);
+  const Eigen::Vector3d off = found->pose - guess;
+  EXPECT_EQ(oracle.scoreOf(static_cast<int>(std::lround(off[2] / kStep)),
+                           static_cast<int>(std::lround(off[0] / kCell)),
+                           static_cast<int>(std::lround(off[1] / kCell))),
+            best);
+  EXPECT_FALSE(search.find(scan, guess, window, share + 0.01));
+}
 
 }  // namespace
 
@@ -93,20 +127,8 @@ TEST(PlaneSearch, findsNoLessThanTryingEverything) {
         scan.push_back(Eigen::Rotation2Dd(-truth[2]) * (p - truth.head<2>()));
     const Eigen::Vector3d guess(uniform(-1, 1), uniform(-1, 1), uniform(-0.1, 0.1));
     const int radius = 4 + static_cast<int>(seed % 9), angles = 2 + static_cast<int>(seed % 3);
-    const Oracle oracle(others, scan, guess);
-    const int best = oracle.bestWithin(radius, angles);
-    const PlaneSearch search(others, kCell);
-    const PlaneSearch::Window window{(radius - 0.5) * kCell, (angles - 0.5) * kStep};
-    const double share = best / (255. * static_cast<double>(scan.size()));
-    const auto found = search.find(scan, guess, window, share - 0.01);
-    ASSERT_TRUE(found) << seed;
-    const Eigen::Vector3d off = found->pose - guess;
-    EXPECT_EQ(oracle.scoreOf(static_cast<int>(std::lround(off[2] / kStep)),
-                             static_cast<int>(std::lround(off[0] / kCell)),
-                             static_cast<int>(std::lround(off[1] / kCell))),
-              best)
-        << seed;
-    EXPECT_FALSE(search.find(scan, guess, window, share + 0.01)) << seed;
+    SCOPED_TRACE(seed);
+    expectTheBest(others, scan, guess, radius, angles);
   }
 }
 
@@ -143,12 +165,28 @@ TEST(PlaneSearch, findsARobotThatMayBeAnywhereInALargePlace) {
   EXPECT_NEAR(std::remainder(found->pose[2] - truth[2], 2 * M_PI), 0, kStep);
 }
 
-/** Where the robot is would be found, but after longer than anybody waits. */
-TEST(PlaneSearch, givesUpWhereMuchIsAlike) {
+TEST(PlaneSearch, findsNoLessThanTryingEverythingInALargeWindow) {
+  Uniform uniform(3);
+  for (const int bushes : {30, 300, 1500}) {
+    SCOPED_TRACE(bushes);
+    const PlanePoints others = field(uniform, bushes, 8);
+    const PlanePoints scan = seenFrom({3, -5, 1}, others, 4);
+    const PlanePoints elsewhere = seenFrom({0, 0, 0}, field(uniform, bushes, 8), 4);
+    const int radius = bushes > 1000 ? 10 : 50;
+    expectTheBest(others, scan, {2, -3, 0}, radius, 120);
+    expectTheBest(others, elsewhere, {2, -3, 0}, radius, 120);
+  }
+}
+
+TEST(PlaneSearch, findsARobotWhereMuchIsAlike) {
   Uniform uniform(2);
   const PlanePoints bushes = field(uniform, 20000, kHalf);
-  const PlanePoints scan = seenFrom({-31, 44, 96 * kStep}, bushes, 12);
-  EXPECT_FALSE(PlaneSearch(bushes, kCell).find(scan, {0, 0, 0}, kEverywhere, 0.65));
+  const Eigen::Vector3d truth(-31, 44, 96 * kStep);
+  const auto found =
+      PlaneSearch(bushes, kCell).find(seenFrom(truth, bushes, 12), {0, 0, 0}, kEverywhere, 0.65);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->pose.head<2>() - truth.head<2>()).norm(), 2 * kCell);
+  EXPECT_TRUE(found->isAlone);
 }
 
 TEST(PlaneSearch, takesNoPlaceForTheOnlyOneWhereMillionsFit) {

@@ -15,9 +15,15 @@ constexpr int kBest = 255;
 /** A point is blurred by a Gaussian of so many cells, and drawn to twice that. */
 constexpr double kBlur = 1.2;
 constexpr int kReach = 3;
-/** Points that one search looks up at most, beside those at the coarsest level: where much is alike
- * (trees, cars) and nothing fits, bounds exclude next to nothing. */
-constexpr std::size_t kMostLooks = 300'000'000;
+/** Points that one search looks up at most, beside those of whole levels: several times what a
+ * quarter of a kilometer of trees and fences takes where nothing fits. */
+constexpr std::size_t kMostLooks = 3'000'000'000;
+/** A level of which more than one square in so many may hold a fit is left for the next finer one:
+ * in rows, squares take so much less time each than alone. Below the finest level that is looked at
+ * as a whole there would be too many to remember. */
+constexpr int kRows = 16, kFinest = 2;
+/** Points whose scores 16 bits hold. */
+constexpr std::size_t kInSum = 257;
 /** Places that are remembered at most, where many around the best fit as well. */
 constexpr std::size_t kMostAround = 1'000'000;
 /** A column of a cloud reaches from low to high if it is so many cells high. */
@@ -63,12 +69,12 @@ PlaneSearch::PlaneSearch(const PlanePoints& points, double cell) : m_cell(cell) 
     high = high.cwiseMax(p);
   }
   m_corner.array() -= (kReach + 1) * cell;  // one more, for rounding
-  m_width = cellOf(high.x() - m_corner.x(), cell) + kReach + 2;
-  m_height = cellOf(high.y() - m_corner.y(), cell) + kReach + 2;
-  // Squares of the coarsest level are a 32nd of the grid at least: there each is looked at.
-  std::size_t levels = kLevels;
-  for (int edge = 1024; edge < std::max(m_width, m_height); edge *= 2) ++levels;
-  m_levels.resize(levels);
+  const auto sizeOf = [&](double length) {  // a multiple of the margin
+    return (cellOf(length, cell) + kReach + 1) / kMargin * kMargin + 3 * kMargin;
+  };
+  m_width = sizeOf(high.x() - m_corner.x());
+  m_height = sizeOf(high.y() - m_corner.y());
+  m_levels.resize(kLevels);
   for (auto& level : m_levels)
     level.assign(static_cast<std::size_t>(m_width) * static_cast<std::size_t>(m_height), 0);
   drawPoints(points);
@@ -82,37 +88,27 @@ void PlaneSearch::drawPoints(const PlanePoints& points) {
       kernel[i + kReach][j + kReach] = static_cast<std::uint8_t>(
           std::lround(kBest * std::exp(-0.5 * (i * i + j * j) / (kBlur * kBlur))));
   for (const Eigen::Vector2d& p : points) {
-    const int x = cellOf(p.x() - m_corner.x(), m_cell), y = cellOf(p.y() - m_corner.y(), m_cell);
+    const int x = cellOf(p.x() - m_corner.x(), m_cell) + kMargin,
+              y = cellOf(p.y() - m_corner.y(), m_cell) + kMargin;
     for (int i = -kReach; i <= kReach; ++i)
       for (int j = -kReach; j <= kReach; ++j) {
-        std::uint8_t& c = cell(0, x + i, y + j);
+        std::uint8_t& c = m_levels[0][indexOf(0, x + i, y + j)];
         c = std::max(c, kernel[i + kReach][j + kReach]);
       }
   }
 }
 
 void PlaneSearch::pool() {
-  for (int level = 1; level < numLevels(); ++level) {
-    const int step = 1 << (level - 1);
-    for (int y = 0; y < m_height; ++y)
-      for (int x = 0; x < m_width; ++x) {
-        std::uint8_t& c = cell(level, x, y);
-        c = cell(level - 1, x, y);
-        if (x + step < m_width) c = std::max(c, cell(level - 1, x + step, y));
-        if (y + step >= m_height) continue;
-        c = std::max(c, cell(level - 1, x, y + step));
-        if (x + step < m_width) c = std::max(c, cell(level - 1, x + step, y + step));
+  for (int level = 1; level < kLevels; ++level) {
+    const auto& finer = m_levels[static_cast<std::size_t>(level - 1)];
+    auto& pooled = m_levels[static_cast<std::size_t>(level)];
+    const int half = 1 << (level - 1), row = m_width >> (level - 1);
+    for (int y = 0; y < m_height - half; ++y)
+      for (int x = 0; x < m_width - half; ++x) {
+        const std::uint8_t* at = &finer[indexOf(level - 1, x, y)];
+        pooled[indexOf(level, x, y)] = std::max({at[0], at[1], at[row], at[row + 1]});
       }
   }
-}
-
-int PlaneSearch::at(int level, int x, int y) const {
-  const int edge = 1 << level;
-  if (x <= -edge || y <= -edge || x >= m_width || y >= m_height) return 0;
-  // A square that begins outside is within the one that begins at the border.
-  return m_levels[static_cast<std::size_t>(level)]
-                 [static_cast<std::size_t>(std::max(0, y)) * m_width +
-                  static_cast<std::size_t>(std::max(0, x))];
 }
 
 class PlaneSearch::Search {
@@ -127,7 +123,8 @@ class PlaneSearch::Search {
       auto& cells = m_cells.emplace_back();
       for (const Eigen::Vector2d& p : scan) {
         const Eigen::Vector2d q = turn * p + guess.head<2>() - grid.m_corner;
-        cells.emplace_back(cellOf(q.x(), grid.m_cell), cellOf(q.y(), grid.m_cell));
+        cells.emplace_back(cellOf(q.x(), grid.m_cell) + kMargin,
+                           cellOf(q.y(), grid.m_cell) + kMargin);
       }
     }
   }
@@ -140,7 +137,7 @@ class PlaneSearch::Search {
   Candidate best(int least, const Places& known = {}) const {
     Candidate best{kNone, 0, 0, 0, least};
     std::size_t left = kMostLooks / (4 * m_cells.front().size());  // of expansions
-    for (std::vector<Candidate> open = coarsest(); !open.empty();) {
+    for (std::vector<Candidate> open = coarsest(least); !open.empty();) {
       const Candidate c = open.back();
       open.pop_back();
       if (c.score <= best.score) continue;
@@ -168,32 +165,84 @@ class PlaneSearch::Search {
  private:
   static bool isWorse(const Candidate& a, const Candidate& b) { return a.score < b.score; }
 
-  std::vector<Candidate> coarsest() const {
+  std::vector<Candidate> coarsest(int least) const {
     std::vector<Candidate> open;
-    const int top = m_grid.numLevels() - 1, edge = 1 << top;
-    for (int a = 0; a <= 2 * m_angles; ++a)
-      for (int x = -m_radius; x <= m_radius; x += edge)
-        for (int y = -m_radius; y <= m_radius; y += edge)
-          open.push_back({top, a, x, y, scoreOf(top, a, x, y)});
+    std::vector<int> scores;
+    for (int angle = 0; angle <= 2 * m_angles; ++angle) {
+      int level = kLevels;
+      std::ptrdiff_t above = 0;
+      do {
+        scoreAll(--level, angle, scores);
+        above = std::count_if(scores.begin(), scores.end(), [=](int s) { return s > least; });
+      } while (level > kFinest && kRows * above > static_cast<std::ptrdiff_t>(scores.size()));
+      const int n = numSquares(level);
+      for (int i = 0; above > 0 && i < n * n; ++i)
+        if (scores[static_cast<std::size_t>(i)] > least)
+          open.push_back({level, angle, (i % n << level) - m_radius, (i / n << level) - m_radius,
+                          scores[static_cast<std::size_t>(i)]});
+    }
     std::stable_sort(open.begin(), open.end(), isWorse);
     return open;
   }
+  /** Along each axis. */
+  int numSquares(int level) const { return (2 * m_radius >> level) + 1; }
+  /** Of all squares of the window, row by row. */
+  void scoreAll(int level, int angle, std::vector<int>& scores) const {
+    const int n = numSquares(level), width = m_grid.m_width >> level,
+              height = m_grid.m_height >> level;
+    scores.assign(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);
+    std::vector<std::uint16_t> sums(scores.size());
+    std::size_t inSums = 0;
+    const auto& cells = m_cells[static_cast<std::size_t>(angle)];
+    const auto& squares = m_grid.m_levels[static_cast<std::size_t>(level)];
+    for (const auto& [cx, cy] : cells) {
+      const int x = cx - m_radius, y = cy - m_radius, column = x >> level, row = y >> level;
+      const int first = std::max(0, -column), last = std::min(n, width - column);
+      for (int j = std::max(0, -row); first < last && j < std::min(n, height - row); ++j) {
+        const std::uint8_t* from =
+            &squares[m_grid.indexOf(level, x + (first << level), y + (j << level))];
+        std::uint16_t* to = &sums[static_cast<std::size_t>(j * n + first)];
+        for (int i = 0; i < last - first; ++i) to[i] = static_cast<std::uint16_t>(to[i] + from[i]);
+      }
+      if (++inSums % kInSum != 0 && inSums < cells.size()) continue;
+      for (std::size_t i = 0; i < scores.size(); ++i) scores[i] += sums[i];
+      std::fill(sums.begin(), sums.end(), 0);
+    }
+  }
   void expand(const Candidate& c, int least, std::vector<Candidate>& open) const {
-    const int edge = 1 << (c.level - 1);
+    const int level = c.level - 1, edge = 1 << level;
+    const auto scores = scoreFour(level, c.angle, c.x, c.y);
     const std::size_t first = open.size();
     for (int i = 0; i < 4; ++i) {
       const int x = c.x + (i & 1 ? edge : 0), y = c.y + (i & 2 ? edge : 0);
-      if (x > m_radius || y > m_radius) continue;
-      const int score = scoreOf(c.level - 1, c.angle, x, y);
-      if (score > least) open.push_back({c.level - 1, c.angle, x, y, score});
+      const int score = scores[static_cast<std::size_t>(i)];
+      if (x <= m_radius && y <= m_radius && score > least)
+        open.push_back({level, c.angle, x, y, score});
     }
     std::stable_sort(open.begin() + static_cast<std::ptrdiff_t>(first), open.end(), isWorse);
+  }
+  /** Of a square, the one beside it, and the two above. */
+  std::array<int, 4> scoreFour(int level, int angle, int dx, int dy) const {
+    const auto& squares = m_grid.m_levels[static_cast<std::size_t>(level)];
+    const int lastX = m_grid.m_width - (2 << level), lastY = m_grid.m_height - (2 << level),
+              row = m_grid.m_width >> level;
+    std::array<int, 4> scores{};
+    for (const auto& [cx, cy] : m_cells[static_cast<std::size_t>(angle)]) {
+      const int x = cx + dx, y = cy + dy;
+      if (x < 0 || y < 0 || x > lastX || y > lastY) continue;  // all are in the margin
+      const std::uint8_t* at = &squares[m_grid.indexOf(level, x, y)];
+      scores[0] += at[0];
+      scores[1] += at[1];
+      scores[2] += at[row];
+      scores[3] += at[row + 1];
+    }
+    return scores;
   }
   /** What two scores differ by though both places fit: each cell of the scan is a sample. */
   int noiseOf(const Candidate& c) const {
     const auto& cells = m_cells[static_cast<std::size_t>(c.angle)];
     double squares = 0;
-    for (const auto& [cx, cy] : cells) squares += std::pow(m_grid.at(0, cx + c.x, cy + c.y), 2);
+    for (const auto& [cx, cy] : cells) squares += std::pow(scoreOf(cx + c.x, cy + c.y), 2);
     const auto n = static_cast<double>(cells.size()), mean = c.score / n;
     const auto samples = static_cast<double>(std::set(cells.begin(), cells.end()).size());
     return static_cast<int>(kAlike * n * std::sqrt((squares / n - mean * mean) / samples));
@@ -207,7 +256,7 @@ class PlaneSearch::Search {
     while (!open.empty()) {
       const auto from = open.back();
       open.pop_back();
-      if (scoreOf(0, from[0], from[1], from[2]) <= least) continue;
+      if (scoreFour(0, from[0], from[1], from[2])[0] <= least) continue;
       known.insert(from);
       for (int i = 0; i < 27; ++i) {
         const std::array<int, 3> to{from[0] + i / 9 - 1, from[1] + i / 3 % 3 - 1,
@@ -221,11 +270,9 @@ class PlaneSearch::Search {
     }
     return known;
   }
-  int scoreOf(int level, int angle, int x, int y) const {
-    int score = 0;
-    for (const auto& [cx, cy] : m_cells[static_cast<std::size_t>(angle)])
-      score += m_grid.at(level, cx + x, cy + y);
-    return score;
+  int scoreOf(int x, int y) const {
+    const bool isIn = x >= 0 && y >= 0 && x < m_grid.m_width && y < m_grid.m_height;
+    return isIn ? m_grid.m_levels[0][m_grid.indexOf(0, x, y)] : 0;
   }
 
   const PlaneSearch& m_grid;

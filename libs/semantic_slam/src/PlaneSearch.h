@@ -17,8 +17,9 @@ using PlanePoints = std::vector<Eigen::Vector2d>;
 PlanePoints uprightPoints(const LabeledCloud& cloud, bool isPlanar, double cell);
 
 /** Where in a plane a scan fits best, in a window that may be large: exhaustive search by branch
- * and bound (Hess et al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). Scores are integers, so
- * that every machine finds the same. */
+ * and bound (Hess et al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). For each
+ * heading it begins with the coarsest squares most of which bounds exclude, all of them, in rows as
+ * they stand in memory. Scores are integers, so that every machine finds the same. */
 class PlaneSearch {
  public:
   /** \param points that others saw, m \param cell edge of the grid's cells, m */
@@ -45,19 +46,20 @@ class PlaneSearch {
   };
   class Search;
 
-  static constexpr int kLevels = 6;  ///< at least
-  int numLevels() const { return static_cast<int>(m_levels.size()); }
+  static constexpr int kLevels = 6, kMargin = 1 << (kLevels - 1);  ///< cells; no square is larger
   void drawPoints(const PlanePoints& points);
   void pool();
-  /** Highest score in the square of 2^level cells that begins at a cell. */
-  int at(int level, int x, int y) const;
-  std::uint8_t& cell(int level, int x, int y) {
-    return m_levels[static_cast<std::size_t>(level)][static_cast<std::size_t>(y) * m_width + x];
+  /** Where the highest score in the square of 2^level cells stands that begins at a cell. Of
+   * squares side by side these are side by side, of one above the other m_width >> level apart. */
+  std::size_t indexOf(int level, int x, int y) const {
+    const int mask = (1 << level) - 1, phase = (y & mask) << level | (x & mask);
+    const int row = phase * (m_height >> level) + (y >> level);
+    return static_cast<std::size_t>(row) * (m_width >> level) + (x >> level);
   }
 
   double m_cell;
-  Eigen::Vector2d m_corner = Eigen::Vector2d::Zero();
-  int m_width = 0, m_height = 0;
+  Eigen::Vector2d m_corner = Eigen::Vector2d::Zero();  ///< without the margin
+  int m_width = 0, m_height = 0;                       ///< multiples of the largest square
   std::vector<std::vector<std::uint8_t>> m_levels;
 };
 

@@ -104,6 +104,7 @@ std::vector<std::string> SlamReport::warnings() const {
 SlamReport SlamEngine::report() const {
   SlamReport report = m_report;
   report.keyframes = m_keyframes.size();
+  if (!m_keyframes.empty()) report.torn += report.joined + parts().size() - 1;
   report.hasOdometry = m_hasOdometry;
   report.isPlanar = m_scale.isPlanar;
   if (m_wayOfScans > 0) report.wayError = m_wayOfOdometry / m_wayOfScans - 1;

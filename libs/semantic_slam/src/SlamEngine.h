@@ -119,9 +119,31 @@ class SlamEngine {
   bool holdsAcross(std::size_t first) const;
   /** A piece begins, which nothing but odometry connects to what was before. */
   void tearAt(std::size_t first);
+  /** Keyframes, in their order, that more than odometry connects. */
+  using Part = std::vector<std::size_t>;
+  /** All keyframes are in one; the largest first. */
+  std::vector<Part> parts() const;
+  /** Searches the piece that the robot is in. */
   bool joinPiece();
-  /** Where the newest stretch fits best of all places before the piece. */
-  std::optional<PoseEdge> findPiece();
+  /** Searches all that is not in the largest part. */
+  bool joinParts();
+  /** \param finds of keyframes of the part that agree with each other; one is enough if it is where
+   * odometry has it. \return whether it is in its place now */
+  bool join(const Part& part, const std::vector<PoseEdge>& finds);
+  /** Stretches of a part that were found in another, most of those that agree. */
+  std::vector<PoseEdge> findPart(const Part& others, const Part& part);
+  struct Places {
+    Part keyframes;
+    PlaneSearch search;  ///< of what they saw
+    Eigen::Vector3d middle;
+    PlaneSearch::Window window;  ///< all of it
+  };
+  Places placesOf(const Part& part) const;
+  using Stretch = std::pair<std::size_t, std::size_t>;  ///< first and last keyframe
+  /** Each has half of its keyframes in common with the next one. */
+  static std::vector<Stretch> stretchesOf(const Part& part);
+  /** Where what a stretch saw fits best. */
+  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes);
 
   // --- Loops and the reference ---
   bool closeLoops();
@@ -129,10 +151,10 @@ class SlamEngine {
   std::vector<std::size_t> placesWithin(const std::vector<double>& ways) const;
   /** Searches the newest keyframe's stretch around a place. */
   std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch, double way);
-  /** Registers the newest keyframe's stretch to what some keyframes saw, nearest to a guess.
+  /** Registers a keyframe's stretch to what some keyframes saw, nearest to a guess.
    * \param beside so many of them to each side */
   std::optional<PoseEdge> edgeNear(const Pose& T_map_guess, std::size_t first, std::size_t last,
-                                   std::size_t beside, const Seen& stretch,
+                                   std::size_t beside, const Seen& stretch, std::size_t keyframe,
                                    double leastMatched) const;
   /** From the newest keyframe to each, m: the shortest way along steps and loops. The poses of both
    * are off by what was driven on it (Bosse et al., "Simultaneous Localization and Map Building in
@@ -191,6 +213,7 @@ class SlamEngine {
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;  ///< they may be wrong
   bool m_isOptimized = true;
   std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece
+  std::vector<std::size_t> m_tears;  ///< first keyframes of all pieces but the first, in order
   std::optional<PoseEdge> m_pendingPiece;
   double m_nextJoin = 0;                        ///< m of the piece's way
   int m_notFound = 0;                           ///< pieces before it, one after the other

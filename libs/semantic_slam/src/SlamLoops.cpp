@@ -120,7 +120,6 @@ bool SlamEngine::closeLoops() {
       if (m_edges.size() == before) continue;
       if (m_piece && place < *m_piece) {  // it is where odometry has it
         m_piece.reset();
-        --m_report.torn;
         m_report.twofold = 0;
       }
       m_report.loops += m_edges.size() - before;
@@ -177,14 +176,14 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
   return edgeNear(m_poses[place] * T_found, first, last,
-                  static_cast<std::size_t>(m_scale.submapKeyframes / 2), stretch,
+                  static_cast<std::size_t>(m_scale.submapKeyframes / 2), stretch, newest,
                   m_scale.leastMatched);
 }
 
 std::optional<PoseEdge> SlamEngine::edgeNear(const Pose& T_map_guess, std::size_t first,
                                              std::size_t last, std::size_t beside,
-                                             const Seen& stretch, double leastMatched) const {
-  const std::size_t newest = m_keyframes.size() - 1;
+                                             const Seen& stretch, std::size_t keyframe,
+                                             double leastMatched) const {
   const auto distance = [&](std::size_t k) {
     return (m_poses[k].translation() - T_map_guess.translation()).norm();
   };
@@ -201,8 +200,8 @@ std::optional<PoseEdge> SlamEngine::edgeNear(const Pose& T_map_guess, std::size_
   const Registration r = match(submapsOf(then.cloud, cells), stretch,
                                m_poses[place].inverse() * T_map_guess, Matrix6::Zero());
   if (r.coveredShare < kCovered || r.matchedShare < leastMatched) return std::nullopt;
-  return PoseEdge{place, newest, r.T_submap_scan,
-                  bothErrors(informationOf(kLoopMeters, kLoopAngle), r, newest), true};
+  return PoseEdge{place, keyframe, r.T_submap_scan,
+                  bothErrors(informationOf(kLoopMeters, kLoopAngle), r, keyframe), true};
 }
 
 Eigen::Isometry3d SlamEngine::T_map_b(const PoseEdge& edge) const {
@@ -211,7 +210,7 @@ Eigen::Isometry3d SlamEngine::T_map_b(const PoseEdge& edge) const {
 
 bool SlamEngine::agree(const PoseEdge& before, const PoseEdge& edge) const {
   if (before.b == edge.b) return false;
-  const double way = m_keyframes[edge.b].way - m_keyframes[before.b].way;
+  const double way = std::abs(m_keyframes[edge.b].way - m_keyframes[before.b].way);
   const Pose T_step = m_poses[before.b].inverse() * m_poses[edge.b];
   const Pose T_map_by_before = T_map_b(before) * T_step;
   const Vector6 off = vectorOf(T_map_by_before.inverse() * T_map_b(edge));

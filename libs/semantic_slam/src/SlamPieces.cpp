@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "SlamEngine.h"
 
@@ -9,9 +10,9 @@ namespace {
 /** Share of a stretch's points after a loss that fit what was seen before it. Stretches that follow
  * each other have .6 to 1 (1 in 20 less than .7), places that do not .1 to .6. */
 constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
-/** Share of the highest score of a place that is searched everywhere. Right places have .7 to .9,
- * wrong ones up to .7. */
-constexpr double kFoundScore = 0.65;
+/** Share of the highest score of a place that is searched everywhere. Right places have .5 to .9;
+ * wrong ones, up to .7, have others beside them that fit as well. */
+constexpr double kFoundScore = 0.5;
 /** A piece is searched when it is so long, m, and each time that it grew by the factor; first when
  * twice as long for each of the last pieces that was not found, of so many. */
 constexpr double kFirstLook = 4, kNextLook = 1.4;
@@ -35,8 +36,7 @@ bool SlamEngine::mendPieces(bool isLast) {
     m_doubted.reset();
     if (first > 0 && !holdsAcross(first)) tearAt(first);
   }
-  if (isLast) m_nextJoin = 0;
-  return m_piece && joinPiece();
+  return isLast ? joinParts() : m_piece && joinPiece();
 }
 
 bool SlamEngine::holdsAcross(std::size_t first) const {
@@ -51,7 +51,7 @@ bool SlamEngine::holdsAcross(std::size_t first) const {
 }
 
 void SlamEngine::tearAt(std::size_t first) {
-  ++m_report.torn;
+  m_tears.push_back(first);
   // Where pieces are not found, the next ones hardly are, and each look takes long.
   m_notFound = m_piece ? m_notFound + 1 : 0;
   m_piece = first;
@@ -81,59 +81,155 @@ void SlamEngine::tearAt(std::size_t first) {
   }
 }
 
+auto SlamEngine::parts() const -> std::vector<Part> {
+  const auto pieceOf = [this](std::size_t k) {
+    const auto next = std::upper_bound(m_tears.begin(), m_tears.end(), k);
+    return static_cast<std::size_t>(next - m_tears.begin());
+  };
+  const std::size_t map = m_tears.size() + 1;  // its frame is a piece without keyframes
+  std::vector<std::size_t> partOf(map + 1);
+  std::iota(partOf.begin(), partOf.end(), 0);
+  for (const PoseEdge& edge : m_edges) {
+    if (!edge.isDoubtful) continue;
+    const std::size_t a = partOf[edge.a == PoseEdge::kMap ? map : pieceOf(edge.a)],
+                      b = partOf[pieceOf(edge.b)];
+    if (a != b) std::replace(partOf.begin(), partOf.end(), a, b);
+  }
+  std::vector<Part> parts(partOf.size());
+  for (std::size_t k = 0; k < m_keyframes.size(); ++k) parts[partOf[pieceOf(k)]].push_back(k);
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.size() > b.size(); });
+  while (!parts.empty() && parts.back().empty()) parts.pop_back();
+  return parts;
+}
+
 bool SlamEngine::joinPiece() {
   const std::size_t newest = m_keyframes.size() - 1;
   const double way = m_keyframes[newest].way - m_keyframes[*m_piece].way;
   if (way < m_nextJoin) return false;
   m_nextJoin = kNextLook * way;
-  const auto found = findPiece();
+  const auto all = parts();
+  if (all.size() == 1) {  // looks at a reference connect it
+    m_piece.reset();
+    return false;
+  }
+  const bool isLargest = all[0].back() == newest;
+  const std::size_t length = std::min(newest - *m_piece, kSearched);
+  const Places places = placesOf(all[isLargest]);
+  const auto found = findStretch(places, {newest - length, newest});
   if (!found) return false;
-  const Pose T_moved = T_map_b(*found) * m_poses[newest].inverse();
-  const double carried =
-      (T_moved * m_poses[newest].translation() - m_poses[newest].translation()).norm();
-  const bool isWhereItIs = carried < kErr + kErrWay * way;
-  const auto before = m_pendingPiece;
+  std::vector<PoseEdge> finds{*found};
+  if (m_pendingPiece && agree(*m_pendingPiece, *found)) finds.push_back(*m_pendingPiece);
   m_pendingPiece = found;
-  if (!isWhereItIs && !(before && agree(*before, *found))) return false;
-  if (isWhereItIs) {
-    --m_report.torn;
-  } else {
+  Part piece(newest + 1 - *m_piece);
+  std::iota(piece.begin(), piece.end(), *m_piece);
+  if (!join(piece, finds)) return false;
+  m_piece.reset();
+  return true;
+}
+
+bool SlamEngine::joinParts() {
+  bool moved = false;
+  auto all = parts();
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (!join(all[i], findPart(all[0], all[i]))) continue;
+    moved = true;
+    all = parts();  // what was not found before may be now
+    i = 0;
+  }
+  return moved;
+}
+
+bool SlamEngine::join(const Part& part, const std::vector<PoseEdge>& finds) {
+  if (finds.empty()) return false;
+  const PoseEdge& found = finds.front();
+  const double way = m_keyframes[part.back()].way - m_keyframes[part.front()].way;
+  const Pose T_moved = T_map_b(found) * m_poses[found.b].inverse();
+  const Eigen::Vector3d at = m_poses[found.b].translation();
+  const double carried = (T_moved * at - at).norm();
+  if (carried >= kErr + kErrWay * way) {
+    if (finds.size() < 2) return false;
     ++m_report.joined;
     m_report.carried = std::max(m_report.carried, carried);
-    for (std::size_t k = *m_piece; k <= newest; ++k)
-      m_poses[k] = levelled(rigid(T_moved * m_poses[k]), m_keyframes[k].seen.T_odometry_robot);
-    m_edges.push_back(*before);
+    const bool staysFirst = part.front() == 0;  // then all others come to it
+    const Pose T = staysFirst ? T_moved.inverse() : T_moved;
+    for (std::size_t k = 0; k < m_poses.size(); ++k)
+      if (std::binary_search(part.begin(), part.end(), k) != staysFirst)
+        m_poses[k] = levelled(rigid(T * m_poses[k]), m_keyframes[k].seen.T_odometry_robot);
   }
-  m_edges.push_back(*found);
+  m_edges.insert(m_edges.end(), finds.begin(), finds.end());
   ++m_report.loops;
   m_report.twofold = 0;
-  m_piece.reset();
   optimizePoses();
   return true;
 }
 
-std::optional<PoseEdge> SlamEngine::findPiece() {
-  const std::size_t newest = m_keyframes.size() - 1, first = *m_piece;
+auto SlamEngine::stretchesOf(const Part& part) -> std::vector<Stretch> {
+  const std::size_t step = (std::min(kSearched, part.size()) + 1) / 2;
+  std::vector<Stretch> stretches;
+  for (std::size_t i = 1, first = 0; i < part.size(); ++i) {
+    if (part[i] != part[i - 1] + 1) first = i;
+    if ((part.size() - 1 - i) % step == 0 && i + 1 >= first + step)
+      stretches.emplace_back(part[i - std::min(i - first, kSearched)], part[i]);
+  }
+  return stretches;
+}
+
+std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part) {
+  const Places places = placesOf(others);
+  const std::vector<Stretch> stretches = stretchesOf(part);
+  std::vector<PoseEdge> finds, most;
+  for (const Stretch& stretch : stretches)
+    if (const auto found = findStretch(places, stretch)) finds.push_back(*found);
+  for (const PoseEdge& find : finds) {
+    std::vector<PoseEdge> alike{find};
+    for (const PoseEdge& other : finds)
+      if (agree(find, other)) alike.push_back(other);
+    if (alike.size() > most.size()) most = alike;
+  }
+  return most;
+}
+
+auto SlamEngine::placesOf(const Part& part) const -> Places {
   const double cell = kCells * m_scale.gridCell;
-  const std::size_t length = std::min(newest - first, kSearched);
-  const Seen stretch = pointsOf(newest - length, newest, newest);
   PlanePoints all;
-  for (std::size_t k = 0; k < first; ++k)
+  Eigen::AlignedBox2d box;
+  for (const std::size_t k : part)
     for (const Eigen::Vector2d& p :
-         uprightPoints(moved(seenAt(k).cloud, m_poses[k]), m_scale.isPlanar, cell))
+         uprightPoints(moved(seenAt(k).cloud, m_poses[k]), m_scale.isPlanar, cell)) {
       all.push_back(p);
+      box.extend(p);
+    }
+  const Eigen::Vector2d middle = box.center();
+  return {part,
+          PlaneSearch(all, cell),
+          {middle.x(), middle.y(), 0},
+          {box.sizes().maxCoeff() / 2, M_PI}};
+}
+
+std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes) {
+  const std::size_t last = keyframes.second;
+  const Seen stretch = pointsOf(keyframes.first, last, last);
+  const PlanePoints searched =
+      uprightPoints(stretch.cloud, m_scale.isPlanar, kCells * m_scale.gridCell);
   PlanePoints some;
-  const PlanePoints searched = uprightPoints(stretch.cloud, m_scale.isPlanar, cell);
   const std::size_t every = 1 + searched.size() / kMostPoints;
   for (std::size_t i = 0; i < searched.size(); i += every) some.push_back(searched[i]);
-  Eigen::AlignedBox2d box;
-  for (const Eigen::Vector2d& p : all) box.extend(p);
-  const Eigen::Vector2d middle = box.center();
-  const auto found = PlaneSearch(all, cell).find(some, {middle.x(), middle.y(), 0},
-                                                 {box.sizes().maxCoeff() / 2, M_PI}, kFoundScore);
+  const auto found = places.search.find(some, places.middle, places.window, kFoundScore);
   m_report.twofold += found && !found->isAlone;
   if (!found || !found->isAlone) return std::nullopt;
-  return edgeNear(poseOfFlat(found->pose), 0, first - 1, kSearched / 2, stretch, kFoundMatched);
+  const Pose T_map = poseOfFlat(found->pose);
+  const Part& part = places.keyframes;
+  const auto distance = [&](std::size_t k) {
+    return (m_poses[k].translation() - T_map.translation()).norm();
+  };
+  const auto nearest =
+      std::min_element(part.begin(), part.end(),
+                       [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+  auto begin = nearest, end = nearest;
+  while (begin != part.begin() && *(begin - 1) + 1 == *begin) --begin;
+  while (end + 1 != part.end() && *end + 1 == *(end + 1)) ++end;
+  return edgeNear(T_map, *begin, *end, kSearched / 2, stretch, last, kFoundMatched);
 }
 
 }  // namespace semantic_slam
