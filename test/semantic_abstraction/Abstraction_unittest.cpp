@@ -116,7 +116,7 @@ TEST(RowKernel, patternsInUseAreFoundAgainHoweverManyThereWere) {
 TEST(Abstraction, takesLittleMemoryBesideTheMap) {
   const auto options = someOptions(0.01);
   const auto scans = scansOfSmallPlace(4, 4000, kTreeClasses, 3);
-  EXPECT_LT(mapOf(scans, &options).memoryUsage(), 1.3 * mapOf(scans).memoryUsage());
+  EXPECT_LT(mapOf(scans, &options).memoryUsage(), 1.4 * mapOf(scans).memoryUsage());
 }
 
 TEST(Abstraction, prunedMapHasTheCompressedTreeOfTheUnprunedOne) {
