@@ -362,8 +362,7 @@ void GTree::Worker::addBlock(const NodeStore& store, const Slot& inner, const Cu
 }
 
 void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cube& cell, bool reshaped) {
-  BlockState& part = *store.state<BlockState>(inner);
-  part.changedBelow |= reshaped;
+  store.state<BlockState>(inner)->changedBelow |= reshaped;
   if (inner.kind == Slot::Kind::Block) return;  // its parent comes next
   InnerState& s = *store.state<InnerState>(inner);
   const NodeSummary n = computeOctant(store, inner, cell, s.row());
@@ -375,10 +374,9 @@ void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cube& cell, b
 }
 
 void GTree::Worker::noteChildren(const NodeStore& store, const Slot& inner, InnerState& s) {
-  const Octant& octant = store.octant(inner);
   unsigned kinds = 0;
   for (int i = 0; i < 8; ++i) {
-    const Slot& child = octant.slots[i];
+    const Slot& child = store.octant(inner).slots[i];
     kinds |= (child.isInner() ? 2u : child.isKnown() ? 1u : 0u) << 2 * i;
     if (child.isInner()) s.changedBelow |= store.state<BlockState>(child)->changedBelow;
   }
