@@ -96,6 +96,29 @@ TEST(RowKernel, sortsTheValuesOfEachOctant) {
   }
 }
 
+TEST(RowKernel, patternsInUseAreFoundAgainHoweverManyThereWere) {
+  PatternTable table(8);
+  const auto entryOf = [&](int i) {
+    const OctantPattern pattern{{0, 0, 0, 0, 0, 0, 0, static_cast<Units>(i)}};
+    PatternTable::Entry& entry = table.find(pattern);
+    if (!entry.row) entry = {pattern, 1.0 * i, table.newRow()};
+    return entry;
+  };
+  for (int i = 0; i < 6000; i += 8) {
+    table.release();
+    std::set<const double*> rows;
+    for (int j = i; j < i + 8; ++j) rows.insert(entryOf(j).row);
+    EXPECT_EQ(rows.size(), 8u);
+    for (int j = i; j < i + 8; ++j) EXPECT_EQ(entryOf(j).gValue, j);
+  }
+}
+
+TEST(Abstraction, takesLittleMemoryBesideTheMap) {
+  const auto options = someOptions(0.01);
+  const auto scans = scansOfSmallPlace(4, 4000, kTreeClasses, 3);
+  EXPECT_LT(mapOf(scans, &options).memoryUsage(), 1.4 * mapOf(scans).memoryUsage());
+}
+
 TEST(Abstraction, prunedMapHasTheCompressedTreeOfTheUnprunedOne) {
   const auto options = someOptions(0.01);
   const auto scans = scansOfSmallPlace(5, 3000, kTreeClasses, 5);

@@ -204,7 +204,7 @@ std::vector<LeafCell> Abstraction::leavesIn(const octomap::OcTreeKey& low,
 
 double Abstraction::objective() const {
   const Slot& root = MapAccess::store(m_map).root();
-  return root.isInner() ? compressedTree().state(root)->gValue : 0.0;
+  return root.isInner() ? MapAccess::store(m_map).state<InnerState>(root)->gValue : 0.0;
 }
 
 AbstractionMeasures Abstraction::measures() const {

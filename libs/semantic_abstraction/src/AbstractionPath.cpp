@@ -82,7 +82,8 @@ AddedToTree Abstraction::forEachTau(const std::function<void(const NodeTau&)>& v
 void Abstraction::forEachPathNode(const VisitPathNode& visit) const {
   const NodeStore& store = MapAccess::store(m_map);
   GTree::Worker& worker = m_gTree.worker(0);
-  const double total = store.root().isInner() ? compressedTree().state(store.root())->density : 1.0;
+  const double total =
+      store.root().isInner() ? store.state<InnerState>(store.root())->density : 1.0;
   std::vector<double> information(options().weights.terms.size());
   std::array<bool, kTreeDepth> inCompressed{};  // of the last inner node at each depth
   const auto tell = [&](const InnerNode& n) {

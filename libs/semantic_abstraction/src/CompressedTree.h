@@ -14,11 +14,11 @@ class CompressedTree {
 
   bool isExpanded(const Node& node) const {
     if (node.isLeaf()) return false;
-    const InnerState& s = *state(NodeStore::slotOf(node));
+    const BlockState& s = *state(NodeStore::slotOf(node));
     const int octant = NodeStore::octantOf(node);
     return octant < 0 ? s.isExpanded : s.expandedOctants >> octant & 1;
   }
-  InnerState* state(const Slot& inner) const { return m_store.state<InnerState>(inner); }
+  BlockState* state(const Slot& inner) const { return m_store.state<BlockState>(inner); }
   /** A leaf of the map that reaches above the blocks, where everything is expanded: its blocks are
    * the compressed tree's leaves. */
   bool isSplitAbove(const Node& node, const Cube& cell) const {

@@ -146,9 +146,11 @@ std::size_t GTree::stateBytes() const {
 
 bool GTree::sameState(const NodeStore& a, const Slot& inA, const NodeStore& b,
                       const Slot& inB) const {
+  const BlockState &p = *a.state<BlockState>(inA), &q = *b.state<BlockState>(inB);
+  if (p.isExpanded != q.isExpanded || p.expandedOctants != q.expandedOctants) return false;
+  if (inA.kind == Slot::Kind::Block) return true;
   const InnerState &x = *a.state<InnerState>(inA), &y = *b.state<InnerState>(inB);
-  return x.density == y.density && x.gValue == y.gValue && x.isExpanded == y.isExpanded &&
-         x.expandedOctants == y.expandedOctants &&
+  return x.density == y.density && x.gValue == y.gValue &&
          std::memcmp(x.row(), y.row(), stateBytes() - sizeof(InnerState)) == 0;
 }
 
@@ -182,7 +184,7 @@ GTree::Worker::Worker(const GTree& gTree)
     : m_gTree(gTree),
       m_valueRows(gTree.layout().rowSize()),
       m_recordRows(gTree.layout().rowSize()),
-      m_patterns(gTree.layout().rowSize() + 2),
+      m_patterns(gTree.layout().rowSize()),
       m_buffers((kOwn + 1) * gTree.layout().rowSize()),
       m_divergences(gTree.layout().sizes().terms) {}
 
@@ -233,10 +235,14 @@ NodeSummary GTree::Worker::computeOctant(const NodeStore& store, const Slot& inn
                                          const Cube& cell, double* row) {
   const Octant& octant = store.octant(inner);
   const EqualDensity equalDensity = m_gTree.equalDensity(cell);
-  m_recordRows.release();
   Children c;
+  for (int i = 0; i < 8; ++i)
+    if (octant.slots[i].kind == Slot::Kind::Block)
+      addBlock(store, octant.slots[i], cell.child(i), i, c);
+  m_recordRows.release();
   for (int i = 0; i < 8; ++i) {
     const Slot& child = octant.slots[i];
+    if (child.kind == Slot::Kind::Block) continue;
     if (child.isInner()) {
       const InnerState& s = *store.state<InnerState>(child);
       c.rows[i] = s.row();
@@ -281,17 +287,10 @@ NodeSummary GTree::Worker::computeOctantOfBlock(const Block& block, int octant,
   return compute(c, density, cell.depth, row);
 }
 
-void GTree::Worker::addPattern(const OctantPattern& pattern, double density, int octant,
-                               Children& c) {
-  const std::size_t rowSize = m_gTree.layout().rowSize();
-  const double* const row = m_patterns.row(pattern, [&](const OctantPattern& p, double* r) {
-    const NodeSummary n = computePattern(p, density, r);
-    r[rowSize] = n.gValue;
-    r[rowSize + 1] = n.isExpanded;
-  });
-  c.rows[octant] = row;
-  c.gValues[octant] = row[rowSize];
-  m_expandedOctants |= static_cast<unsigned>(row[rowSize + 1]) << octant;
+void GTree::Worker::addPattern(PatternTable::Entry& entry, const OctantPattern& pattern,
+                               double density) {
+  double* const row = m_patterns.newRow();
+  entry = {pattern, computePattern(pattern, density, row).gValue, row};
 }
 
 void GTree::Worker::addOctant(const Block& block, int octant, const ClassRecord* records,
@@ -325,17 +324,23 @@ NodeSummary GTree::Worker::computeBlock(const NodeStore& store, const Slot& inne
   if (hasPatterns) sortOctants(block.values, patterns[0].values);
   m_patterns.release();
   m_expandedOctants = 0;
+  unsigned expanded = 0;
   Children c;
   const ClassRecord* records = block.recorded ? store.recordsOf(block) : nullptr;
   for (int o = 0; o < 8; ++o) {
     const std::uint8_t recorded = octantOf(block.recorded, o);
     if (recorded == 0 && hasPatterns) {
-      addPattern(patterns[o], *density, o, c);
+      PatternTable::Entry& entry = m_patterns.find(patterns[o]);
+      if (!entry.row) addPattern(entry, patterns[o], *density);
+      c.rows[o] = entry.row;
+      c.gValues[o] = entry.gValue;
+      expanded |= static_cast<unsigned>(entry.gValue > m_gTree.m_eps) << o;
     } else {
       addOctant(block, o, records, cell.child(o), density, c);
       records += countOf(recorded);
     }
   }
+  m_expandedOctants |= expanded;
   return compute(c, density, cell.depth, row);
 }
 
@@ -344,30 +349,36 @@ InnerNode GTree::Worker::inspected(const NodeSummary& summary, const Cube& cell,
   return {summary, cell, numChildren, row, m_divergences.data()};
 }
 
-void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cube& cell, bool reshaped) {
-  const bool isBlock = inner.kind == Slot::Kind::Block;
-  InnerState& s = *store.state<InnerState>(inner);
-  const NodeSummary n = isBlock ? computeBlock(store, inner, cell, s.row())
-                                : computeOctant(store, inner, cell, s.row());
-  s.density = n.density;
-  s.gValue = n.gValue;
-  s.changedBelow |= reshaped || s.isExpanded != n.isExpanded;
-  s.isExpanded = n.isExpanded;
-  isBlock ? noteOctants(s) : noteChildren(store, inner, s);
+void GTree::Worker::addBlock(const NodeStore& store, const Slot& inner, const Cube& cell, int child,
+                             Children& c) {
+  double* const row = buffer(kBlocks + child);
+  const NodeSummary n = computeBlock(store, inner, cell, row);
+  c.rows[child] = row;
+  c.gValues[child] = n.gValue;
+  c.densities[child] = n.density;
+  BlockState& s = *store.state<BlockState>(inner);
+  if (s.isExpanded != n.isExpanded || s.expandedOctants != m_expandedOctants)
+    s = {n.isExpanded, true, static_cast<std::uint8_t>(m_expandedOctants)};
 }
 
-void GTree::Worker::noteOctants(InnerState& s) const {
-  s.changedBelow |= s.expandedOctants != m_expandedOctants;
-  s.expandedOctants = static_cast<std::uint8_t>(m_expandedOctants);
+void GTree::Worker::recompute(NodeStore& store, Slot& inner, const Cube& cell, bool reshaped) {
+  store.state<BlockState>(inner)->changedBelow |= reshaped;
+  if (inner.kind == Slot::Kind::Block) return;  // its parent comes next
+  InnerState& s = *store.state<InnerState>(inner);
+  const NodeSummary n = computeOctant(store, inner, cell, s.row());
+  s.density = n.density;
+  s.gValue = n.gValue;
+  s.changedBelow |= s.isExpanded != n.isExpanded;
+  s.isExpanded = n.isExpanded;
+  noteChildren(store, inner, s);
 }
 
 void GTree::Worker::noteChildren(const NodeStore& store, const Slot& inner, InnerState& s) {
-  const Octant& octant = store.octant(inner);
   unsigned kinds = 0;
   for (int i = 0; i < 8; ++i) {
-    const Slot& child = octant.slots[i];
+    const Slot& child = store.octant(inner).slots[i];
     kinds |= (child.isInner() ? 2u : child.isKnown() ? 1u : 0u) << 2 * i;
-    if (child.isInner()) s.changedBelow |= store.state<InnerState>(child)->changedBelow;
+    if (child.isInner()) s.changedBelow |= store.state<BlockState>(child)->changedBelow;
   }
   s.changedBelow |= s.childKinds != kinds;
   s.childKinds = static_cast<std::uint16_t>(kinds);

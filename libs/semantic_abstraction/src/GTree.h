@@ -54,15 +54,21 @@ class DensityChange {
 
 class LeafLog;
 
-/** Bookkeeping of an inner node at depth 14 or above. Behind it stands the node's row (see
- * RowLayout). All of it is a function of the children alone. */
-struct InnerState {
-  double density;  ///< mean density of p(x) in the cell; p(n) = density * volume, unnormalized
-  double gValue;   ///< G_Pi; above the blocks, if they are free, the mean of the children's
-  std::uint16_t childKinds;      ///< two bits each: no child, a leaf, an inner node
+/** Bookkeeping of a Block: nothing but its part in the compressed tree. Its row is computed when
+ * its parent's is, from the voxels: to keep it would take more memory, and no less time. */
+struct BlockState {
   std::uint8_t isExpanded;       ///< in the compressed tree if the parent is
   std::uint8_t changedBelow;     ///< the compressed tree's leaves may have changed since last told
-  std::uint8_t expandedOctants;  ///< of a block's octants, those whose isExpanded would be set
+  std::uint8_t expandedOctants;  ///< those of a block whose isExpanded would be set
+};
+static_assert(sizeof(BlockState) <= NodeStore::kBlockStateBytes);
+
+/** Bookkeeping of an inner node above the Blocks. Behind it stands the node's row (see RowLayout).
+ * All of it is a function of the children alone. */
+struct InnerState : BlockState {
+  std::uint16_t childKinds;  ///< two bits each: no child, a leaf, an inner node
+  double density;  ///< mean density of p(x) in the cell; p(n) = density * volume, unnormalized
+  double gValue;   ///< G_Pi; above the blocks, if they are free, the mean of the children's
 
   double* row() { return reinterpret_cast<double*>(this + 1); }
   const double* row() const { return reinterpret_cast<const double*>(this + 1); }
@@ -156,9 +162,11 @@ class GTree final : public NodeObserver {
     /** Density of a cell whose children weigh the same (see equalDensity()). */
     using EqualDensity = std::optional<double>;
 
-    /** Note in the state whether the children's part in the compressed tree changed. */
-    void noteOctants(InnerState& s) const;
+    /** Notes in the state whether the children's part in the compressed tree changed. */
     static void noteChildren(const NodeStore& store, const Slot& inner, InnerState& s);
+    /** What a block's parent needs of it. The block's state is up to date then. */
+    void addBlock(const NodeStore& store, const Slot& inner, const Cube& cell, int child,
+                  Children& c);
     NodeSummary computeOctant(const NodeStore& store, const Slot& inner, const Cube& cell,
                               double* row);
     /** The block's own node, and m_expandedOctants. */
@@ -172,8 +180,8 @@ class GTree final : public NodeObserver {
     NodeSummary computeOctantOfBlock(const Block& block, int octant, const ClassRecord* records,
                                      const Cube& cell, const EqualDensity& blocksDensity,
                                      double* row);
-    /** What a block's node needs of an octant: of one that is a pattern, of any. */
-    void addPattern(const OctantPattern& pattern, double density, int octant, Children& c);
+    void addPattern(PatternTable::Entry& entry, const OctantPattern& pattern, double density);
+    /** What a block's node needs of an octant. */
     void addOctant(const Block& block, int octant, const ClassRecord* records, const Cube& cell,
                    const EqualDensity& blocksDensity, Children& c);
     /** Row, divergences (m_divergences), and the rest. */
@@ -187,13 +195,13 @@ class GTree final : public NodeObserver {
 
     const GTree& m_gTree;
     ValueRows m_valueRows;  ///< of leaves without a class record
-    RowCache<ClassRecord> m_recordRows;
-    /** Row, G-value and expansion of octants without class records. */
-    RowCache<OctantPattern> m_patterns;
-    std::vector<double> m_buffers;  ///< rows of a block's octants, and of a node that is inspected
+    RecordRows m_recordRows;
+    PatternTable m_patterns;  ///< of octants without class records
+    /** Rows of a block's octants, of a tile's blocks, and of a node that is inspected. */
+    std::vector<double> m_buffers;
     std::vector<double> m_divergences;  ///< JS_t of the node that was computed last
     unsigned m_expandedOctants = 0;
-    static constexpr int kOwn = 8;
+    static constexpr int kBlocks = 8, kOwn = 16;
   };
   Worker& worker(int i) override;
 

@@ -49,7 +49,7 @@ void LeafLog::update(const CompressedTree& tree, Index& told, const Node& node, 
   if (!tree.isExpanded(node) && !tree.isSplitAbove(node, cell)) return becomeLeaf(told, cell);
   const bool wasInner = told >= kFirstInner;
   const bool hasState = !node.isLeaf() && NodeStore::octantOf(node) < 0;
-  InnerState* state = hasState ? tree.state(NodeStore::slotOf(node)) : nullptr;
+  BlockState* state = hasState ? tree.state(NodeStore::slotOf(node)) : nullptr;
   if (wasInner && state && !state->changedBelow) return;
   if (!wasInner) {
     remove(told, cell);

@@ -4,6 +4,7 @@
 #include <semantic_octree/store/Cubes.h>
 #include <tree_abstraction/AbstractionWeights.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -94,18 +95,66 @@ inline std::size_t hashOf(const ClassRecord& record) {
   return hash ^ hash << 32;
 }
 
+struct FreeMemory {
+  void operator()(double* p) const { std::free(p); }
+};
+
 /** An octant's eight values, in ascending order. */
 struct OctantPattern {
   Units values[8];
   bool operator==(const OctantPattern& o) const { return std::memcmp(this, &o, sizeof o) == 0; }
 };
 
-inline std::size_t hashOf(const OctantPattern& p) {
-  std::uint64_t bits[2];
-  std::memcpy(bits, &p, sizeof bits);
-  const std::size_t hash = (bits[0] * 0x9e3779b97f4a7c15u ^ bits[1]) * 0xd6e8feb86659fd93u;
-  return hash ^ hash << 32;
-}
+/** What follows from octants' values: it is computed when first asked for, and kept. There are many
+ * octants, and few patterns. */
+class PatternTable {
+ public:
+  struct Entry {
+    OctantPattern pattern;
+    double gValue;
+    const double* row;  ///< null: there is none yet
+  };
+
+  explicit PatternTable(std::size_t rowSize)
+      : m_rowSize(rowSize),
+        m_entries(kEntries),
+        m_rows(static_cast<double*>(std::aligned_alloc(kLine, kMost * rowSize * sizeof(double)))) {
+    if (!m_rows) throw std::bad_alloc();
+  }
+
+  void clear() {
+    std::fill(m_entries.begin(), m_entries.end(), Entry());
+    m_size = 0;
+  }
+  /** Entries asked for up to now are not in use any more. Eight may be asked for until the next
+   * time. */
+  void release() {
+    if (m_size > kMost - 8) clear();
+  }
+
+  /** A pattern's entry, or where it is to be. */
+  Entry& find(const OctantPattern& pattern) {
+    std::size_t i = hashOf(pattern) >> (64 - kBits);
+    while (m_entries[i].row && !(m_entries[i].pattern == pattern)) i = (i + 1) % kEntries;
+    return m_entries[i];
+  }
+  double* newRow() { return m_rows.get() + m_size++ * m_rowSize; }
+
+ private:
+  static constexpr int kBits = 12;
+  static constexpr std::size_t kEntries = std::size_t(1) << kBits, kMost = kEntries / 2;
+  static constexpr std::size_t kLine = 64;  ///< bytes that a processor fetches at once, as a rule
+
+  static std::size_t hashOf(const OctantPattern& p) {
+    std::uint64_t bits[2];
+    std::memcpy(bits, &p, sizeof bits);
+    return (bits[0] * 0x9e3779b97f4a7c15u ^ bits[1]) * 0xd6e8feb86659fd93u;
+  }
+
+  std::size_t m_rowSize, m_size = 0;
+  std::vector<Entry> m_entries;
+  std::unique_ptr<double, FreeMemory> m_rows;
+};
 
 /** Rows of leaves without a class record (see RowLayout), by their log-odds: each is computed when
  * first asked for, and kept. */
@@ -132,21 +181,17 @@ class ValueRows {
 
  private:
   static constexpr std::size_t kValues = 1 << 16;
-  struct Free {
-    void operator()(double* p) const { std::free(p); }
-  };
   std::size_t m_rowSize;
   std::vector<char> m_known;
   /** Pages that no value touches cost nothing. */
-  std::unique_ptr<double, Free> m_rows;
+  std::unique_ptr<double, FreeMemory> m_rows;
 };
 
-/** Rows of leaves (see RowLayout) by what the leaves hold. A few values make up most of a map, and
- * a row takes exponentials and logarithms to compute. A row stays where it is until release(). */
-template <typename Key>
-class RowCache {
+/** Rows of leaves with a class record (see RowLayout). A few records make up most of a map, and a
+ * row takes exponentials and logarithms to compute. A row stays where it is until release(). */
+class RecordRows {
  public:
-  explicit RowCache(std::size_t rowSize)
+  explicit RecordRows(std::size_t rowSize)
       : m_rowSize(rowSize), m_slots(kSlots), m_rows((kSlots + kInUse) * rowSize) {}
 
   /** Rows asked for up to now are not in use any more. At most eight are between two releases. */
@@ -155,13 +200,9 @@ class RowCache {
     m_numSpares = 0;
   }
 
-  void clear() {
-    for (Slot& slot : m_slots) slot.usedAt = 0;
-  }
-
   /** \param compute computes a row that is not there: compute(key, row) */
   template <typename F>
-  const double* row(const Key& key, const F& compute) {
+  const double* row(const ClassRecord& key, const F& compute) {
     const std::size_t i = hashOf(key) >> (64 - kSlotBits);
     Slot& slot = m_slots[i];
     if (slot.usedAt != 0 && slot.key == key) {
@@ -175,12 +216,12 @@ class RowCache {
   static constexpr int kSlotBits = 11, kInUse = 8;
   static constexpr std::size_t kSlots = std::size_t(1) << kSlotBits;
   struct Slot {
-    Key key{};
+    ClassRecord key{};
     std::uint64_t usedAt = 0;  ///< 0: empty
   };
 
   template <typename F>
-  const double* newRow(const Key& key, std::size_t i, const F& compute) {
+  const double* newRow(const ClassRecord& key, std::size_t i, const F& compute) {
     const bool inUse = m_slots[i].usedAt == m_age;
     double* const row = &m_rows[(inUse ? kSlots + m_numSpares++ : i) * m_rowSize];
     compute(key, row);

@@ -6,6 +6,15 @@ namespace semantic_octree {
 
 template class BlockUpdate<ClassFilter<float>>;
 
+MSO_VECTORIZED Block::Count Block::count() const {
+  const std::uint8_t any = octantsWith(known);
+  // The leaves' bits, one in each octant, then all of its.
+  VoxelBits leaves = leafOctants * VoxelBits(0x0101010101010101) & 0x8040201008040201;
+  leaves = ((leaves + 0x7f7f7f7f7f7f7f7f) >> 7 & 0x0101010101010101) * 0xff;
+  return {countOf(any) + countOf(known & ~leaves),
+          countOf(static_cast<std::uint8_t>(any & ~leafOctants))};
+}
+
 namespace {
 
 constexpr int kLanesOfUnits = 16;

@@ -9,7 +9,7 @@ using Kind = Slot::Kind;
 
 NodeStore::NodeStore(std::size_t stateBytes)
     : m_octants(sizeof(Octant) + stateBytes),
-      m_blocks(sizeof(Block) + stateBytes),
+      m_blocks(sizeof(Block) + (stateBytes > 0 ? kBlockStateBytes : 0)),
       m_records(sizeof(ClassRecord)) {}
 
 NodeStore::NodeStore(const NodeStore& o, std::size_t stateBytes) : NodeStore(stateBytes) {
@@ -213,7 +213,8 @@ void NodeArena::copy(const NodeStore& from, const Slot& source, Slot& copy,
       this->copy(from, children.slots[i], octant.slots[i], tiles);
   }
   if (source.isInner() && from.stateBytes() == m_store->stateBytes())
-    std::copy_n(from.state<std::byte>(source), from.stateBytes(), m_store->state<std::byte>(copy));
+    std::copy_n(from.state<std::byte>(source), from.stateBytes(source),
+                m_store->state<std::byte>(copy));
 }
 
 bool NodeArena::prune(Slot& inner) {

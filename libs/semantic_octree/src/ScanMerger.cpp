@@ -60,8 +60,7 @@ bool ScanMerger::mergeTile(const ScanCube& cube) {
     return BlockScan{tile.free[i], tile.hit.words[i], m_scan.votes(), tile.hit.ranks[i]};
   };
   Octant& octant = childrenOf(*cube.slot);
-  for (int i = 0; i < 8; ++i)
-    if (blockScan(i).touched()) m_nodes.store.prefetchInner(octant.slots[i]);
+  for (const Slot& slot : octant.slots) m_nodes.store.prefetchInner(slot);
   bool changed = false;
   for (int i = 0; i < 8; ++i)
     if (blockScan(i).touched())

@@ -114,6 +114,7 @@ auto BlockUpdate<Filter>::update(Block& block, const BlockScan& scan) -> Result 
 
 template <typename Filter>
 void BlockUpdate<Filter>::makeRoomForRecords(Block& block, const BlockScan& scan) {
+  if (!scan.hit && !block.leafOctants) return;
   VoxelBits room = block.recorded, opened = 0;
   unsigned octants = block.leafOctants & octantsWith(scan.touched()) & octantsWith(~scan.free);
   block.leafOctants &= static_cast<std::uint8_t>(~octants);

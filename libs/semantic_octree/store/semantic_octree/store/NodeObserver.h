@@ -5,8 +5,8 @@
 
 namespace semantic_octree {
 
-/** Keeps something of each inner node of a map (see NodeStore::state()), which follows from the
- * node's children alone: whatever changes nodes has it computed anew, from the leaves up.
+/** Keeps something of each inner node of a map (see NodeStore::state()), which follows from what is
+ * below the node alone: whatever changes nodes has it computed anew, from the leaves up.
  *
  * The map owns it. A new node's bytes are 0. */
 class NodeObserver {
@@ -21,7 +21,8 @@ class NodeObserver {
   };
 
   virtual ~NodeObserver() = default;
-  /** Room that it needs in an inner node; always the same. */
+  /** Room that it needs in an inner node above the blocks; always the same, and more than 0. In a
+   * block it has NodeStore::kBlockStateBytes. */
   virtual std::size_t stateBytes() const = 0;
   /** The i-th thread's; made when first asked for (not thread safe). */
   virtual Worker& worker(int i) = 0;

@@ -140,7 +140,7 @@ class TileSource {
  * to what keeps their bookkeeping (GTree). Everything else reads SemanticOcTreeNode. */
 class NodeStore {
  public:
-  /** \param stateBytes size of the bookkeeping of an inner node that is a slot, 0 for none. */
+  /** \param stateBytes size of the bookkeeping of an inner node above the blocks, 0 for none. */
   explicit NodeStore(std::size_t stateBytes);
   /** A copy with room for this bookkeeping (copied if both have the same size). */
   NodeStore(const NodeStore& o, std::size_t stateBytes);
@@ -202,6 +202,11 @@ class NodeStore {
                                     : m_octants.at(inner.index) + sizeof(Octant));
   }
   std::size_t stateBytes() const { return m_octants.stride() - sizeof(Octant); }
+  std::size_t stateBytes(const Slot& inner) const {
+    return inner.kind == Slot::Kind::Block ? m_blocks.stride() - sizeof(Block) : stateBytes();
+  }
+  /** Size of a block's bookkeeping, where there is any. */
+  static constexpr std::size_t kBlockStateBytes = 8;
   static const Slot& slotOf(const Node& node) { return *node.m_slot; }
   /** Which of a block's octants an inner node is; -1: it is a slot. */
   static int octantOf(const Node& inner) {
