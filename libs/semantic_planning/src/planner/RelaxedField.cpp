@@ -18,9 +18,11 @@ using Cost = RelaxedField::Cost;
 
 class RelaxedSearch {
  public:
-  RelaxedSearch(const CollisionChecker& checker, bool overForbidden)
+  /** \param stride columns that a step goes on by */
+  RelaxedSearch(const CollisionChecker& checker, bool overForbidden, int stride)
       : m_checker(checker),
         m_overForbidden(overForbidden),
+        m_stride(stride),
         m_field(checker),
         m_weights(weightsOfRanks(checker.order())) {
     for (std::size_t step = 0; step < kSteps.size(); ++step)
@@ -51,17 +53,22 @@ class RelaxedSearch {
   using Label = RelaxedField::Label;
   using Place = RelaxedField::Place;
 
+  /** Of those that steps lead to. */
   Place placeAt(const GroundPose& p) const {
-    return m_field.placeNear(m_checker.ground().columnAt(p.pose.x, p.pose.y), p.z, 0);
+    const Column c = m_checker.ground().columnAt(p.pose.x, p.pose.y);
+    return m_field.placeNear({c.x - c.x % m_stride, c.y - c.y % m_stride}, p.z,
+                             (m_stride - 1) * m_checker.ground().step());
   }
 
   /** \param before what it costs to be there */
   void take(std::size_t step, const Place& from, Cost before) {
+    const Column column{from.column.x + m_stride * kSteps[step].x,
+                        from.column.y + m_stride * kSteps[step].y};
     const Place to =
-        m_field.placeNear(from.column + kSteps[step], from.surface->z, m_checker.ground().step());
+        m_field.placeNear(column, from.surface->z, m_stride * m_checker.ground().step());
     if (!to.surface) return;
     const Label& known = m_field.label(to.cell);
-    const Cost length = step % 2 ? kDiagonalStep : kStraightStep;
+    const Cost length = m_stride * (step % 2 ? kDiagonalStep : kStraightStep);
     if (before + length * m_weights.front() >= known.cost) return;
     colored_graph::Rank rank = m_field.rankAt(to, step);
     if (rank == colored_graph::kForbidden && m_overForbidden) rank = m_checker.order().ranks() - 1;
@@ -116,6 +123,7 @@ class RelaxedSearch {
 
   const CollisionChecker& m_checker;
   const bool m_overForbidden;
+  const int m_stride;
   RelaxedField m_field;
   std::array<std::vector<Column>, kSteps.size()> m_discs;  ///< by step
   const std::vector<Cost> m_weights;                       ///< of a length, by rank
@@ -161,11 +169,26 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
   return weights;
 }
 
+namespace {
+
+/** Columns of a step that is no longer than what the smallest disc keeps free around it: where the
+ * vehicle fits at both ends there is little room for anything between. */
+int longestStride(const CollisionChecker& checker) {
+  int needed2 = std::numeric_limits<int>::max();
+  for (const auto& disc : checker.discs()) needed2 = std::min(needed2, disc.needed2);
+  return std::max(1, static_cast<int>(std::sqrt(needed2)));
+}
+
+}  // namespace
+
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
                           const GroundPose& goal, bool overForbidden) {
   RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  RelaxedSearch(checker, overForbidden).run(start, goal, guide);
+  for (int stride = longestStride(checker); path.size() < 2 && stride > 0; stride /= 2) {
+    guide = {};
+    RelaxedSearch(checker, overForbidden, stride).run(start, goal, guide);
+  }
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {
