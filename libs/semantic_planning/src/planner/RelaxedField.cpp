@@ -16,13 +16,22 @@ namespace {
 
 using Cost = RelaxedField::Cost;
 
+/** Columns of a step that is no longer than what the smallest disc keeps free around it: where the
+ * vehicle fits at both ends there is little room for anything between. */
+int strideOf(const CollisionChecker& checker) {
+  int needed2 = std::numeric_limits<int>::max();
+  for (const auto& disc : checker.discs()) needed2 = std::min(needed2, disc.needed2);
+  return std::max(1, static_cast<int>(std::sqrt(needed2)));
+}
+
+/** Goes on by several columns where there is room, and by single ones elsewhere: a passage has such
+ * columns along its sides, however narrow it is. */
 class RelaxedSearch {
  public:
-  /** \param stride columns that a step goes on by */
-  RelaxedSearch(const CollisionChecker& checker, bool overForbidden, int stride)
+  RelaxedSearch(const CollisionChecker& checker, bool overForbidden)
       : m_checker(checker),
         m_overForbidden(overForbidden),
-        m_stride(stride),
+        m_stride(strideOf(checker)),
         m_field(checker),
         m_weights(weightsOfRanks(checker.order())) {
     for (std::size_t step = 0; step < kSteps.size(); ++step)
@@ -44,7 +53,10 @@ class RelaxedSearch {
       if (estimate != cost + bound(place.column)) continue;  // there was a better way to it
       noteNearest(place.column, guide);
       Slices::count(1);
-      for (std::size_t step = 0; step < kSteps.size(); ++step) take(step, place, cost);
+      for (std::size_t step = 0; step < kSteps.size(); ++step) {
+        if (isNarrow(*place.surface)) take(step, 1, place, cost);
+        if (isOnGrid(place.column)) take(step, m_stride, place, cost);
+      }
     }
   }
 
@@ -53,22 +65,30 @@ class RelaxedSearch {
   using Label = RelaxedField::Label;
   using Place = RelaxedField::Place;
 
-  /** Of those that steps lead to. */
-  Place placeAt(const GroundPose& p) const {
-    const Column c = m_checker.ground().columnAt(p.pose.x, p.pose.y);
-    return m_field.placeNear({c.x - c.x % m_stride, c.y - c.y % m_stride}, p.z,
-                             (m_stride - 1) * m_checker.ground().step());
+  bool isOnGrid(Column c) const { return c.x % m_stride == 0 && c.y % m_stride == 0; }
+  /** Whether something is so near that single columns matter. */
+  bool isNarrow(const Surface& s) const {
+    const int largest = m_checker.ground().largestClearance();
+    return m_stride > 1 && s.clearance2 < largest * largest;
   }
 
-  /** \param before what it costs to be there */
-  void take(std::size_t step, const Place& from, Cost before) {
-    const Column column{from.column.x + m_stride * kSteps[step].x,
-                        from.column.y + m_stride * kSteps[step].y};
+  Place placeAt(const GroundPose& p) const {
+    const Column c = m_checker.ground().columnAt(p.pose.x, p.pose.y);
+    const Place own = m_field.placeNear(c, p.z, 0);
+    if (!own.surface || isNarrow(*own.surface)) return own;
+    return m_field.placeNear({c.x - c.x % m_stride, c.y - c.y % m_stride}, p.z,
+                             m_stride * m_checker.ground().step());
+  }
+
+  /** \param columns that it goes on by \param before what it costs to be there */
+  void take(std::size_t step, int columns, const Place& from, Cost before) {
+    const Column column{from.column.x + columns * kSteps[step].x,
+                        from.column.y + columns * kSteps[step].y};
     const Place to =
-        m_field.placeNear(column, from.surface->z, m_stride * m_checker.ground().step());
-    if (!to.surface) return;
+        m_field.placeNear(column, from.surface->z, columns * m_checker.ground().step());
+    if (!to.surface || !(isOnGrid(column) || isNarrow(*to.surface))) return;
     const Label& known = m_field.label(to.cell);
-    const Cost length = m_stride * (step % 2 ? kDiagonalStep : kStraightStep);
+    const Cost length = columns * (step % 2 ? kDiagonalStep : kStraightStep);
     if (before + length * m_weights.front() >= known.cost) return;
     colored_graph::Rank rank = m_field.rankAt(to, step);
     if (rank == colored_graph::kForbidden && m_overForbidden) rank = m_checker.order().ranks() - 1;
@@ -123,7 +143,7 @@ class RelaxedSearch {
 
   const CollisionChecker& m_checker;
   const bool m_overForbidden;
-  const int m_stride;
+  const int m_stride;  ///< columns of a step where there is room
   RelaxedField m_field;
   std::array<std::vector<Column>, kSteps.size()> m_discs;  ///< by step
   const std::vector<Cost> m_weights;                       ///< of a length, by rank
@@ -169,26 +189,11 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
   return weights;
 }
 
-namespace {
-
-/** Columns of a step that is no longer than what the smallest disc keeps free around it: where the
- * vehicle fits at both ends there is little room for anything between. */
-int longestStride(const CollisionChecker& checker) {
-  int needed2 = std::numeric_limits<int>::max();
-  for (const auto& disc : checker.discs()) needed2 = std::min(needed2, disc.needed2);
-  return std::max(1, static_cast<int>(std::sqrt(needed2)));
-}
-
-}  // namespace
-
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
                           const GroundPose& goal, bool overForbidden) {
   RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  for (int stride = longestStride(checker); path.size() < 2 && stride > 0; stride /= 2) {
-    guide = {};
-    RelaxedSearch(checker, overForbidden, stride).run(start, goal, guide);
-  }
+  RelaxedSearch(checker, overForbidden).run(start, goal, guide);
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {
