@@ -191,6 +191,7 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
 
 namespace {
 
+constexpr double kHeadingReach = 5;   // m
 constexpr int kRays = 16, kStep = 2;  // columns between places of a ray that are looked at
 
 /** How far it goes on from a point over ground that is no worse than there, meters. */
@@ -237,7 +238,7 @@ std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const Collisio
                                      const RoadmapOptions& options) {
   const double random = unitHash(static_cast<std::uint32_t>(point.column.x),
                                  static_cast<std::uint32_t>(point.column.y), options.seed);
-  const bool aligned = hasAlignedHeadings(options.kind);
+  const bool aligned = options.kind != GraphKind::Leaves;
   const int headings = aligned ? 2 : 1;
   double first = 2 * M_PI * random / headings;
   if (const auto axis = aligned ? axisAt(point, checker) : std::nullopt)

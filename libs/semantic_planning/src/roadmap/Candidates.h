@@ -71,7 +71,6 @@ struct CandidatePoint {
 
   auto key() const { return std::tuple(priority, column.x, column.y, z); }
   bool operator<(const CandidatePoint& o) const { return key() < o.key(); }
-  bool operator==(const CandidatePoint& o) const { return key() == o.key(); }
 };
 
 /** The points of a tile that lie in leaves of the compressed tree, in no particular order. */
@@ -84,12 +83,9 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
                                        const RoadmapOptions& options);
 
 /** A point's poses: two in the directions in which the free space around of its class and better
- * ones runs, or one in a direction that looks random (of leaves as published). They depend on
- * ground within kHeadingReach meters. */
+ * ones runs, or one in a direction that looks random (of leaves as published). */
 std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
                                      const RoadmapOptions& options);
-constexpr double kHeadingReach = 5;
-inline bool hasAlignedHeadings(GraphKind kind) { return kind != GraphKind::Leaves; }
 
 /** A draw, from 1 on, of a Halton sequence over a region and headings; nothing if it is not over
  * any ground. */
