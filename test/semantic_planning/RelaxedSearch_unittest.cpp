@@ -46,8 +46,11 @@ class Patches {
       }
   }
 
-  int anywhere(std::mt19937& random) const {
-    const auto inside = [&] { return int(kBorder + random() % (kEdge - 2 * kBorder)); };
+  /** \param stride from keys that are multiples of it it leads to such */
+  int anywhere(std::mt19937& random, int stride) const {
+    const auto inside = [&] {
+      return int(kBorder + random() % (kEdge - 2 * kBorder)) / stride * stride;
+    };
     const int y = inside();
     return y * kEdge + inside();
   }
@@ -56,8 +59,9 @@ class Patches {
     return {at(place % kEdge), at(place / kEdge), 0};
   }
 
-  /** Dijkstra's, in steps of 5 straight on and 7 aslant. */
-  std::int64_t leastCost(int from, int to, const std::vector<std::int64_t>& weights) const {
+  /** Dijkstra's, in steps of 5 straight on and 7 aslant, `stride` times that. */
+  std::int64_t leastCost(int from, int to, int stride,
+                         const std::vector<std::int64_t>& weights) const {
     using Reached = std::pair<std::int64_t, int>;
     std::vector<std::int64_t> least(m_rank.size(), std::numeric_limits<std::int64_t>::max());
     std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
@@ -71,12 +75,12 @@ class Patches {
       const auto [cost, place] = queue.top();
       queue.pop();
       if (cost > least[static_cast<std::size_t>(place)]) continue;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -stride; dy <= stride; dy += stride)
+        for (int dx = -stride; dx <= stride; dx += stride) {
           const int x = place % kEdge + dx, y = place / kEdge + dy;
           if (x < 0 || y < 0 || x >= kEdge || y >= kEdge) continue;
           const int rank = m_rank[static_cast<std::size_t>(y * kEdge + x)];
-          reach(y * kEdge + x, cost + (dx && dy ? 7 : 5) * weights[std::size_t(rank)]);
+          reach(y * kEdge + x, cost + stride * (dx && dy ? 7 : 5) * weights[std::size_t(rank)]);
         }
     }
     return least[static_cast<std::size_t>(to)];
@@ -222,13 +226,16 @@ TEST_F(RelaxedSearch, noWayBetweenAnyPlacesCostsLess) {
   options.vehicle.wheelTrack = 0;
   const std::vector<std::int64_t> weights = weightsOfRanks(order);
   std::mt19937 random(3);
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 24; ++round) {
+    const int stride = 1 + round % 2;
+    options.vehicle.footprint = Footprint::rectangle(-0.25, 0.55, stride == 2 ? 0.6 : 0.2);
     world = PaintedWorld();
-    const Patches patches(world, 2 << (round % 4), random);
-    const int from = patches.anywhere(random), to = patches.anywhere(random);
+    const Patches patches(world, 2 << (round / 2 % 4), random);
+    const int from = patches.anywhere(random, stride), to = patches.anywhere(random, stride);
     start = patches.poseAt(from);
     goal = patches.poseAt(to);
-    const auto least = patches.leastCost(from, to, weights);  // a sixteenth of a fifth of a voxel
+    // In sixteenths of a fifth of a voxel.
+    const auto least = patches.leastCost(from, to, stride, weights);
     EXPECT_NEAR(search().price, static_cast<double>(least) / 16 * 0.04, 1e-6) << round;
   }
 }

@@ -57,18 +57,7 @@ class ColumnGrid {
     return *own(at);
   }
 
-  /** f(tile, T&) for the tiles from low to high that are set. */
-  template <class F>
-  void forEachIn(Column low, Column high, F f) {
-    for (int y = std::max(low.y, m_first.y); y <= std::min(high.y, m_first.y + m_height - 1); ++y)
-      for (int x = std::max(low.x, m_first.x); x <= std::min(high.x, m_first.x + m_width - 1); ++x)
-        if (T* const tile = find({x, y})) f(Column{x, y}, *tile);
-  }
-  /** f(tile, T&) for all that are set, row by row. */
-  template <class F>
-  void forEach(F f) {
-    forEachIn(m_first, {m_first.x + m_width - 1, m_first.y + m_height - 1}, f);
-  }
+  /** f(tile, const T&) for all that are set, row by row. */
   template <class F>
   void forEach(F f) const {
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(size()); ++i)

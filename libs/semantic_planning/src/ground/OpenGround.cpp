@@ -17,17 +17,17 @@ class Square {
   std::int16_t& at(int x, int y) { return m_numbers[static_cast<std::size_t>(y * m_edge + x)]; }
 
   /** Replaces each number by that which better(l, r) chooses of those within some columns along x
-   * and y; what is nearer to the border than that stays. */
+   * and y; what is nearer to the border than that is none of these. */
   template <class Better>
   void spread(int reach, Better better) {
-    for (const int stride : {1, m_edge}) {
-      const std::vector<std::int16_t> before = m_numbers;
-      const int size = static_cast<int>(before.size()), margin = reach * stride;
-      for (int offset = -margin; offset <= margin; offset += stride)
-        for (int i = margin; i < size - margin; ++i)
-          m_numbers[static_cast<std::size_t>(i)] = better(
-              m_numbers[static_cast<std::size_t>(i)], before[static_cast<std::size_t>(i + offset)]);
-    }
+    for (const int stride : {1, m_edge})
+      for (int done = 0, more = 0; done < reach; done += more) {
+        more = std::min(2 * done + 1, reach - done);
+        const std::vector<std::int16_t> before = m_numbers;
+        const std::size_t offset = static_cast<std::size_t>(more * stride);
+        for (std::size_t i = offset; i + offset < before.size(); ++i)
+          m_numbers[i] = better(before[i], better(before[i - offset], before[i + offset]));
+      }
   }
 
  private:

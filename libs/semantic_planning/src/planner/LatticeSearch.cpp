@@ -47,7 +47,7 @@ class LatticeSearch {
   }
 
  private:
-  static constexpr double kLongest = 15;  ///< curve, meters
+  static constexpr double kFarthest = 15;  ///< of poses from each other, meters
   static constexpr Length kUnreached = std::numeric_limits<Length>::max();
 
   struct Place {
@@ -87,7 +87,7 @@ class LatticeSearch {
     constexpr double kLeastAhead = 0.3;  // of the distance
     const double dx = to.pose.pose.x - from.pose.pose.x, dy = to.pose.pose.y - from.pose.pose.y;
     const double distance = std::hypot(dx, dy);
-    if (from.cost == kUnreached || distance > kLongest) return;
+    if (from.cost == kUnreached || distance > kFarthest) return;
     const double fromAhead = from.heading.x * dx + from.heading.y * dy;
     const double toAhead = to.heading.x * dx + to.heading.y * dy;
     if (from.isFree || to.isFree ||
@@ -99,7 +99,6 @@ class LatticeSearch {
   void addCurves(const Place& from, const Place& to) {
     Slices::count(10);
     for (const ReedsSheppCurve& curve : m_cost.curves(from.pose.pose, to.pose.pose)) {
-      if (curve.length() > kLongest) continue;
       Length cost = from.cost + lengthDown(m_cost.of(curve));
       if (from.last) cost += lengthDown(m_cost.ofChange(endOf(from.last->curve), beginOf(curve)));
       if (cost < to.cost) m_ways.push({cost, &from, &m_curves.emplace_back(curve)});

@@ -94,7 +94,6 @@ std::optional<TangentArc> tangentArc(const TPose2D& from, const Arc& into) {
 }
 
 using colored_graph::EdgeProfile;
-using colored_graph::Length;
 using mrpt::math::TPose2D;
 
 namespace {
@@ -129,8 +128,6 @@ class Smoothing {
       : m_checker(checker),
         m_perMeter(prices.perMeter()),
         m_budget{m_perMeter, std::numeric_limits<double>::max()} {
-    for (const double price : m_perMeter)
-      if (std::isfinite(price)) m_rounding += price * colored_graph::toMeters(2 * kRounding);
     for (std::size_t i = 0; i + 1 < path.size();) i = addPart(path, i);
     m_end = checker.ground().keyOf(path.back().z);
   }
@@ -151,7 +148,6 @@ class Smoothing {
 
  private:
   static constexpr double kLeastGain = 0.02;  // m
-  static constexpr Length kRounding = 20;     ///< of a class's length, at most
 
   /** From a point of the path to where curvature or gear change. \return that point */
   std::size_t addPart(const std::vector<PathPoint>& path, std::size_t from) {
@@ -277,6 +273,7 @@ class Smoothing {
 
   /** If the vehicle can drive it and classes do not cost more than it gains. */
   bool apply(const Replacement& r) {
+    constexpr double kSlack = 1e-3;  // m: lengths are rounded
     if (m_looks == 0 ||
         !m_seen.insert({m_parts[r.before].number, m_parts[r.after].number, r.leave}).second)
       return false;
@@ -285,9 +282,9 @@ class Smoothing {
     std::vector<Part> parts = partsOf(r);
     const auto begin = m_parts.begin() + static_cast<std::ptrdiff_t>(r.before),
                end = m_parts.begin() + static_cast<std::ptrdiff_t>(r.after) + 1;
-    const std::vector<Part> replaced(begin, end);
-    m_budget.left = r.gain + ofClasses(replaced) + m_rounding;
-    if (!evaluate(r, parts) || r.gain - moreOfClasses(replaced, parts) < kLeastGain) return false;
+    const double most = r.gain + ofClasses({begin, end});
+    m_budget.left = most + kSlack;
+    if (!evaluate(r, parts) || most - ofClasses(parts) < kLeastGain) return false;
     for (Part& part : parts) part.number = m_numbers++;
     m_parts.insert(m_parts.erase(begin, end), parts.begin(), parts.end());
     return true;
@@ -295,20 +292,6 @@ class Smoothing {
 
   int zAfter(const Replacement& r) const {
     return r.after + 1 < m_parts.size() ? m_parts[r.after + 1].z : m_end;
-  }
-
-  /** What the classes of some parts cost more than those of others, meters. */
-  double moreOfClasses(const std::vector<Part>& before, const std::vector<Part>& after) const {
-    std::vector<Length> more(m_perMeter.size());
-    for (const Part& part : before)
-      for (const auto& stretch : part.profile) more[stretch.classId] -= stretch.length;
-    for (const Part& part : after)
-      for (const auto& stretch : part.profile) more[stretch.classId] += stretch.length;
-    double price = 0;
-    for (std::size_t id = 0; id < more.size(); ++id)
-      if (std::abs(more[id]) > kRounding)
-        price += m_perMeter[id] * colored_graph::toMeters(more[id]);
-    return price;
   }
 
   /** What some parts cost for their classes, meters. */
@@ -340,7 +323,6 @@ class Smoothing {
   const CollisionChecker& m_checker;
   const std::vector<double> m_perMeter;
   ClassBudget m_budget;
-  double m_rounding = 0;  ///< what rounded lengths may cost, meters
   std::vector<Part> m_parts;
   std::set<std::tuple<int, int, std::size_t>> m_seen;
   int m_end = 0;  ///< key of the surface where the path ends

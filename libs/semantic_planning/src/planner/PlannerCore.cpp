@@ -274,7 +274,7 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   m_kept.groundChanged(change.tiles);
   if (m_sliced)
     m_sliced->changed.insert(m_sliced->changed.end(), change.tiles.begin(), change.tiles.end());
-  if (m_candidates) change.points = m_candidates->update(touched, change.tiles);
+  if (m_candidates) m_candidates->update(touched, change.tiles);
   return change;
 }
 
@@ -286,7 +286,7 @@ UpdateResult PlannerCore::update() {
   result.tilesTouched = change.tilesTouched;
   result.tilesChanged = change.tiles.size();
   if (m_roadmap) {
-    m_roadmap->update(change.tiles, change.points);
+    m_roadmap->update(change.tiles);
     const MapRoadmap::Counts vertices = m_roadmap->takeVertexCounts();
     const Roadmap::Counts edges = m_roadmap->roadmap().takeCounts();
     result.verticesInserted = vertices.inserted;

@@ -77,7 +77,6 @@ class PlannerCore {
   struct MapChange {
     std::size_t tilesTouched = 0;
     std::vector<Column> tiles;  ///< of the ground
-    CandidateStore::Change points;
   };
   MapChange followMap(StageClock& clock);
   /** The vehicle stands at the start: where the map knows no ground below it, there is some. */

@@ -55,7 +55,6 @@ class PoseSearch {
     GroundPose start;
     double radius;            ///< of the square around the start that is looked at, meters
     double reach;             ///< farthest target that a curve is tried to, meters
-    double longestCurve;      ///< of those that are tried, meters
     double weight = 1;        ///< of what the field says: more finds a way sooner, and a worse one
     int poses;                ///< to go on from, at most
     int shareOfTargets;       ///< from each pose one of so many is tried
@@ -194,7 +193,6 @@ class PoseSearch {
   void join(int from, const Target& target) {
     const MotionCost& price = m_checker.motionCost();
     const ReedsSheppCurve curve = curveBetween(node(from).pose, target.pose);
-    if (curve.length() > m_task.longestCurve) return;
     Length cost = node(from).cost + ofChange(node(from), beginOf(curve)) +
                   lengthDown(price.of(m_task.isReversed ? curve.reversed() : curve));
     if (target.state) cost += lengthDown(price.ofChange(endOf(curve), *target.state));
@@ -271,9 +269,9 @@ std::vector<PathPoint> wayFromOneEnd(const GroundPose& start, const GroundPose& 
   const double turn = checker.reedsShepp().turningRadius(),
                distance = std::hypot(goal.pose.x - start.pose.x, goal.pose.y - start.pose.y);
   const auto [from, to] = isReversed ? std::tie(goal, start) : std::tie(start, goal);
-  PoseSearch search({from, distance + kBeside, kReach + 2 * turn, kReach + 3 * turn + distance,
-                     kWeight, kPoses, kShare, isReversed},
-                    checker, prices);
+  PoseSearch search(
+      {from, distance + kBeside, kReach + 2 * turn, kWeight, kPoses, kShare, isReversed}, checker,
+      prices);
   search.addRest(to, 0);
   search.add({to, std::nullopt, 0, 0});
   const auto way = search.run(kMost);
@@ -319,14 +317,13 @@ std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path,
                                              const CollisionChecker& checker,
                                              const ClassPrices& prices) {
   constexpr double kLeast = 8, kInTurningRadii = 2.5, kSpacing = 0.5, kMargin = 0.3;  // m
-  constexpr double kAlong = 1.5, kReach = 0.6, kLongestCurve = 1.25;  // of the radius
-  constexpr double kLeastGain = 0.2;                                  // m
+  constexpr double kAlong = 1.5, kReach = 0.6;  // of the radius
   constexpr int kPoses = 500, kShare = 6;
   const Ground& ground = checker.ground();
   const double radius = std::max(kLeast, kInTurningRadii * checker.reedsShepp().turningRadius());
-  PoseSearch search({poseAt(path.front(), ground), radius, kReach * radius, kLongestCurve * radius,
-                     1, kPoses, kShare, isReversed},
-                    checker, prices);
+  PoseSearch search(
+      {poseAt(path.front(), ground), radius, kReach * radius, 1, kPoses, kShare, isReversed},
+      checker, prices);
   const std::vector<Length> toGo = costsToGo(path, isReversed, checker, prices);
   double last = 0;
   for (std::size_t i = 1; i < path.size() && path[i].arcLength < kAlong * radius; ++i) {
@@ -337,7 +334,7 @@ std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path,
     last = p.arcLength;
     search.add({poseAt(p, ground), stateAt(path[std::min(i + 1, path.size() - 1)]), toGo[i], i});
   }
-  auto way = search.run(toGo.front() - lengthDown(kLeastGain));
+  auto way = search.run(toGo.front());
   if (!way) return std::nullopt;
   const double more = way->path.back().arcLength - path[way->target].arcLength;
   for (std::size_t i = way->target + 1; i < path.size(); ++i) {

@@ -16,11 +16,22 @@ namespace {
 
 using Cost = RelaxedField::Cost;
 
+/** Columns of a step that is no longer than what the smallest disc keeps free around it: where the
+ * vehicle fits at both ends there is little room for anything between. */
+int strideOf(const CollisionChecker& checker) {
+  int needed2 = std::numeric_limits<int>::max();
+  for (const auto& disc : checker.discs()) needed2 = std::min(needed2, disc.needed2);
+  return std::max(1, static_cast<int>(std::sqrt(needed2)));
+}
+
+/** Goes on by several columns where there is room, and by single ones elsewhere: a passage has such
+ * columns along its sides, however narrow it is. */
 class RelaxedSearch {
  public:
   RelaxedSearch(const CollisionChecker& checker, bool overForbidden)
       : m_checker(checker),
         m_overForbidden(overForbidden),
+        m_stride(strideOf(checker)),
         m_field(checker),
         m_weights(weightsOfRanks(checker.order())) {
     for (std::size_t step = 0; step < kSteps.size(); ++step)
@@ -42,7 +53,10 @@ class RelaxedSearch {
       if (estimate != cost + bound(place.column)) continue;  // there was a better way to it
       noteNearest(place.column, guide);
       Slices::count(1);
-      for (std::size_t step = 0; step < kSteps.size(); ++step) take(step, place, cost);
+      for (std::size_t step = 0; step < kSteps.size(); ++step) {
+        if (isNarrow(*place.surface)) take(step, 1, place, cost);
+        if (isOnGrid(place.column)) take(step, m_stride, place, cost);
+      }
     }
   }
 
@@ -51,17 +65,30 @@ class RelaxedSearch {
   using Label = RelaxedField::Label;
   using Place = RelaxedField::Place;
 
-  Place placeAt(const GroundPose& p) const {
-    return m_field.placeNear(m_checker.ground().columnAt(p.pose.x, p.pose.y), p.z, 0);
+  bool isOnGrid(Column c) const { return c.x % m_stride == 0 && c.y % m_stride == 0; }
+  /** Whether something is so near that single columns matter. */
+  bool isNarrow(const Surface& s) const {
+    const int largest = m_checker.ground().largestClearance();
+    return m_stride > 1 && s.clearance2 < largest * largest;
   }
 
-  /** \param before what it costs to be there */
-  void take(std::size_t step, const Place& from, Cost before) {
+  Place placeAt(const GroundPose& p) const {
+    const Column c = m_checker.ground().columnAt(p.pose.x, p.pose.y);
+    const Place own = m_field.placeNear(c, p.z, 0);
+    if (!own.surface || isNarrow(*own.surface)) return own;
+    return m_field.placeNear({c.x - c.x % m_stride, c.y - c.y % m_stride}, p.z,
+                             m_stride * m_checker.ground().step());
+  }
+
+  /** \param columns that it goes on by \param before what it costs to be there */
+  void take(std::size_t step, int columns, const Place& from, Cost before) {
+    const Column column{from.column.x + columns * kSteps[step].x,
+                        from.column.y + columns * kSteps[step].y};
     const Place to =
-        m_field.placeNear(from.column + kSteps[step], from.surface->z, m_checker.ground().step());
-    if (!to.surface) return;
+        m_field.placeNear(column, from.surface->z, columns * m_checker.ground().step());
+    if (!to.surface || !(isOnGrid(column) || isNarrow(*to.surface))) return;
     const Label& known = m_field.label(to.cell);
-    const Cost length = step % 2 ? kDiagonalStep : kStraightStep;
+    const Cost length = columns * (step % 2 ? kDiagonalStep : kStraightStep);
     if (before + length * m_weights.front() >= known.cost) return;
     colored_graph::Rank rank = m_field.rankAt(to, step);
     if (rank == colored_graph::kForbidden && m_overForbidden) rank = m_checker.order().ranks() - 1;
@@ -116,6 +143,7 @@ class RelaxedSearch {
 
   const CollisionChecker& m_checker;
   const bool m_overForbidden;
+  const int m_stride;  ///< columns of a step where there is room
   RelaxedField m_field;
   std::array<std::vector<Column>, kSteps.size()> m_discs;  ///< by step
   const std::vector<Cost> m_weights;                       ///< of a length, by rank

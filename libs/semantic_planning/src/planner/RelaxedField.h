@@ -267,8 +267,8 @@ constexpr std::int64_t kWeightOfLength = 16;
 std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order);
 
 /** From column to column in eight directions, wherever there is ground: the way of least price. It
- * knows no turning radius. \param overForbidden also over what the order forbids, at the price of
- * the worst rank */
+ * knows no turning radius. Steps are about as long as half the vehicle is wide where nothing is
+ * near. \param overForbidden also over what the order forbids, at the price of the worst rank */
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
                           const GroundPose& goal, bool overForbidden = false);
 

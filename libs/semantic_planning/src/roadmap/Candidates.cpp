@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <iterator>
 
 #include "ground/SurfaceTile.h"
 
@@ -192,6 +191,7 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
 
 namespace {
 
+constexpr double kHeadingReach = 5;   // m
 constexpr int kRays = 16, kStep = 2;  // columns between places of a ray that are looked at
 
 /** How far it goes on from a point over ground that is no worse than there, meters. */
@@ -238,7 +238,7 @@ std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const Collisio
                                      const RoadmapOptions& options) {
   const double random = unitHash(static_cast<std::uint32_t>(point.column.x),
                                  static_cast<std::uint32_t>(point.column.y), options.seed);
-  const bool aligned = hasAlignedHeadings(options.kind);
+  const bool aligned = options.kind != GraphKind::Leaves;
   const int headings = aligned ? 2 : 1;
   double first = 2 * M_PI * random / headings;
   if (const auto axis = aligned ? axisAt(point, checker) : std::nullopt)
@@ -262,82 +262,41 @@ CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Groun
   if (follows()) m_follower.skipLeaves();  // begins with all
 }
 
-CandidateStore::Tile CandidateStore::make(Column tile) const {
-  Tile result;
-  result.made = true;
-  result.lowest = 65535;
-  forColumnsOf(tile, [&](Column c) {
-    for (const Surface& s : m_ground.surfaces(c)) {
-      if (!s.drivable) continue;
-      result.lowest = std::min<int>(result.lowest, s.z);
-      result.highest = std::max<int>(result.highest, s.z);
-    }
-  });
-  if (isOfTree(m_options.kind))
-    result.points = compressedPoints(tile, Abstraction(m_map), m_ground, m_options);
-  else if (m_options.kind == GraphKind::Full)
-    result.points = gridPoints(tile, m_ground, m_options);
-  std::sort(result.points.begin(), result.points.end());
-  result.points.shrink_to_fit();
-  return result;
+const std::vector<CandidatePoint>& CandidateStore::in(Column tile) {
+  const auto [kept, isNew] = m_points.try_emplace(tile);
+  if (isNew && m_options.kind == GraphKind::Full)
+    kept->second = gridPoints(tile, m_ground, m_options);
+  else if (isNew)
+    kept->second = compressedPoints(tile, Abstraction(m_map), m_ground, m_options);
+  return kept->second;
 }
 
-CandidateStore::Tile& CandidateStore::made(Column tile) {
-  Tile& kept = m_tiles.at(tile);
-  if (!kept.made) kept = make(tile);
-  return kept;
-}
-
-void CandidateStore::addTilesOf(const semantic_octree::Cube& leaf, std::vector<Column>& tiles) {
-  const int size = leaf.edge(), z = leaf.lowest.z();
+void CandidateStore::forgetIn(const semantic_octree::Cube& leaf) {
   const Column low{leaf.lowest.x(), leaf.lowest.y()};
-  const Column first = tileOf(low), last = tileOf({low.x + size - 1, low.y + size - 1});
-  m_tiles.forEachIn(first, last, [&](Column c, const Tile& tile) {
-    if (tile.made && z <= tile.highest && z + size > tile.lowest) tiles.push_back(c);
-  });
+  const Column first = tileOf(low),
+               last = tileOf({low.x + leaf.edge() - 1, low.y + leaf.edge() - 1});
+  for (int x = first.x; x <= last.x; ++x)
+    m_points.erase(m_points.lower_bound({x, first.y}), m_points.upper_bound({x, last.y}));
 }
 
 /** Where leaves came or went, and where those that stayed may be of another class, or have become
  * occupied or free. */
-std::vector<Column> CandidateStore::outdated(const semantic_octree::TileChange& touched) {
+void CandidateStore::followTree(const semantic_octree::TileChange& touched) {
   const semantic_octree::TreeChange change = m_follower.leaves();
-  std::vector<Column> tiles;
-  if (touched.all || change.all) {
-    m_tiles.forEach([&](Column c, const Tile& tile) {
-      if (tile.made) tiles.push_back(c);
-    });
-    return tiles;
-  }
-  const Abstraction abstraction(m_map);
+  if (touched.all || change.all) return forget();
   for (const auto* leaves : {&change.removed, &change.added})
-    for (const LeafCell& leaf : *leaves) addTilesOf(leaf, tiles);
-  constexpr int kTouchedDepth = 13;  // 8 voxels
+    for (const LeafCell& leaf : *leaves) forgetIn(leaf);
+  const Abstraction abstraction(m_map);
   for (const octomap::OcTreeKey& key : touched.tiles) {
-    addTilesOf(semantic_octree::Cube::around({key[0], key[1], key[2]}, kTouchedDepth), tiles);
-    for (const LeafCell& leaf : abstraction.leavesIn(key, key, false))
-      if (leaf.depth < kTouchedDepth) addTilesOf(leaf, tiles);
+    m_points.erase(tileOf({key[0], key[1]}));
+    for (const LeafCell& leaf : abstraction.leavesIn(key, key, false)) forgetIn(leaf);
   }
-  return tiles;
 }
 
-CandidateStore::Change CandidateStore::update(const semantic_octree::TileChange& touched,
-                                              const std::vector<Column>& changedTiles) {
-  std::vector<Column> tiles;
-  if (follows()) tiles = outdated(touched);
-  if (isOfTree(m_options.kind) || m_options.kind == GraphKind::Full)
-    tiles.insert(tiles.end(), changedTiles.begin(), changedTiles.end());
-  std::sort(tiles.begin(), tiles.end());
-  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
-  Change change;
-  for (const Column& tile : tiles) {
-    const std::vector<CandidatePoint> before = std::exchange(m_tiles.at(tile), make(tile)).points;
-    const std::vector<CandidatePoint>& now = in(tile);
-    std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
-                        std::back_inserter(change.removed));
-    std::set_difference(now.begin(), now.end(), before.begin(), before.end(),
-                        std::back_inserter(change.added));
-  }
-  return change;
+void CandidateStore::update(const semantic_octree::TileChange& touched,
+                            const std::vector<Column>& changedTiles) {
+  if (follows()) followTree(touched);
+  for (const Column& tile : changedTiles) m_points.erase(tile);
 }
 
 }  // namespace semantic_planning

@@ -9,11 +9,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <vector>
-
-#include "ground/ColumnGrid.h"
 
 namespace semantic_planning {
 
@@ -72,7 +71,6 @@ struct CandidatePoint {
 
   auto key() const { return std::tuple(priority, column.x, column.y, z); }
   bool operator<(const CandidatePoint& o) const { return key() < o.key(); }
-  bool operator==(const CandidatePoint& o) const { return key() == o.key(); }
 };
 
 /** The points of a tile that lie in leaves of the compressed tree, in no particular order. */
@@ -85,12 +83,9 @@ std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
                                        const RoadmapOptions& options);
 
 /** A point's poses: two in the directions in which the free space around of its class and better
- * ones runs, or one in a direction that looks random (of leaves as published). They depend on
- * ground within kHeadingReach meters. */
+ * ones runs, or one in a direction that looks random (of leaves as published). */
 std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
                                      const RoadmapOptions& options);
-constexpr double kHeadingReach = 5;
-inline bool hasAlignedHeadings(GraphKind kind) { return kind != GraphKind::Leaves; }
 
 /** A draw, from 1 on, of a Halton sequence over a region and headings; nothing if it is not over
  * any ground. */
@@ -102,8 +97,7 @@ std::optional<GroundPose> haltonPose(unsigned draw, const PlanningRegion& region
 double dither(unsigned x, unsigned y, unsigned seed);
 
 /** The candidate points of GraphKind::Compressed, Leaves and Full, which depend on the map and not
- * on start and goal: each tile's are looked for once and kept until the map changes there. Other
- * kinds have none. */
+ * on start and goal: each tile's are looked for once and kept until the map changes there. */
 class CandidateStore {
  public:
   /** \param map, ground must outlive the store; with kinds of the tree (isOfTree) the map keeps
@@ -112,39 +106,22 @@ class CandidateStore {
   CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
                  const RoadmapOptions& options);
 
-  /** Least priority first. */
-  const std::vector<CandidatePoint>& in(Column tile) { return made(tile).points; }
-
-  void forget() { m_tiles = {}; }
-
-  struct Change {
-    std::vector<CandidatePoint> removed, added;
-  };
-  /** Brings the store up to date with map and ground. \param changedTiles of the ground
-   * \return what changed in tiles that were asked for, or whose ground changed. */
-  Change update(const semantic_octree::TileChange& touched,
-                const std::vector<Column>& changedTiles);
+  const std::vector<CandidatePoint>& in(Column tile);
+  void forget() { m_points.clear(); }
+  /** Forgets where the map changed. \param changedTiles of the ground */
+  void update(const semantic_octree::TileChange& touched, const std::vector<Column>& changedTiles);
 
  private:
-  struct Tile {
-    bool made = false;
-    std::vector<CandidatePoint> points;
-    int lowest = 0, highest = -1;  ///< keys of drivable surfaces
-  };
-
   /** Whether the compressed tree's changes matter. */
   bool follows() const { return isOfTree(m_options.kind) && !m_map.isReadOnly(); }
-  Tile& made(Column tile);
-  Tile make(Column tile) const;
-  /** Tiles whose points may depend on a leaf. */
-  void addTilesOf(const semantic_octree::Cube& leaf, std::vector<Column>& tiles);
-  std::vector<Column> outdated(const semantic_octree::TileChange& touched);
+  void forgetIn(const semantic_octree::Cube& leaf);
+  void followTree(const semantic_octree::TileChange& touched);
 
   semantic_octree::SemanticOcTree& m_map;
   semantic_octree::LeafFollower m_follower;  ///< of the compressed tree's leaves
   const Ground& m_ground;
   const RoadmapOptions m_options;
-  ColumnGrid<Tile> m_tiles;
+  std::map<Column, std::vector<CandidatePoint>> m_points;  ///< by tile
 };
 
 }  // namespace semantic_planning

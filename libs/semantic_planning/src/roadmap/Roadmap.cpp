@@ -69,8 +69,9 @@ std::vector<Roadmap::VertexId> Roadmap::replace(const std::vector<VertexId>& rem
     ids.push_back(m_graph.addVertex(classes[i]));
     keepPose(ids.back(), poses[i]);
   }
-  reconcile(m_nearest->replace(removed, ids, poses));
-  reconcileQueryVertices();
+  m_nearest->replace(removed, ids, poses);
+  reconcile();
+  for (const VertexId query : m_queryVertices) reconcileQueryVertex(query);
   return ids;
 }
 
@@ -95,7 +96,6 @@ std::vector<Roadmap::EdgeId> Roadmap::edgesBetween(VertexId a, VertexId b) const
 }
 
 void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
-  if (!m_graph.containsVertex(a) || !m_graph.containsVertex(b)) return;
   const std::vector<EdgeId> edges = edgesBetween(a, b);
   if (linked && edges.empty()) {
     link(a, b);
@@ -132,15 +132,39 @@ void Roadmap::keepLength(EdgeId e, double length) {
   ++m_counts.edgesInserted;
 }
 
-void Roadmap::reconcile(const std::vector<std::pair<VertexId, VertexId>>& pairs) {
-  for (const auto& [a, b] : pairs)
-    if (const bool linked = m_nearest->linked(a, b); !linked || m_mostEdges == 0)
-      setLinked(a, b, linked);
-  if (m_mostEdges > 0) keepBestEdges();
+/** The pairs that are to have edges. */
+std::set<std::pair<Roadmap::VertexId, Roadmap::VertexId>> Roadmap::neighbors() const {
+  using Worth = std::tuple<std::size_t, double, PosePair, VertexId, VertexId>;
+  std::vector<Worth> pairs;
+  std::set<std::pair<VertexId, VertexId>> best;
+  for (VertexId a = 0; a < m_graph.vertexIdEnd(); ++a) {
+    if (!m_nearest->contains(a)) continue;
+    const auto& nearest = m_nearest->of(a);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const auto [low, high] = std::minmax(a, nearest[i].id);
+      if (m_mostEdges == 0)
+        best.emplace(low, high);
+      else
+        pairs.emplace_back(i, nearest[i].distance, PosePair(pose(low), pose(high)), low, high);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  for (const auto& [place, distance, poses, a, b] : pairs)
+    if (best.size() < m_mostEdges) best.emplace(a, b);
+  return best;
 }
 
-void Roadmap::reconcileQueryVertices() {
-  for (const VertexId query : m_queryVertices) reconcileQueryVertex(query);
+void Roadmap::reconcile() {
+  const auto wanted = neighbors();
+  for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
+    if (!m_graph.containsEdge(e)) continue;
+    const auto [a, b] = std::minmax(m_graph.edge(e).a, m_graph.edge(e).b);
+    if (m_nearest->contains(a) && m_nearest->contains(b) && !wanted.count({a, b})) {
+      m_graph.removeEdge(e);
+      ++m_counts.edgesRemoved;
+    }
+  }
+  for (const auto& [a, b] : wanted) setLinked(a, b, true);
 }
 
 void Roadmap::reconcileQueryVertex(VertexId query) {
@@ -154,24 +178,6 @@ void Roadmap::reconcileQueryVertex(VertexId query) {
   for (const Incidence& i : present)
     if (!wanted.count(i.neighbor)) setLinked(query, i.neighbor, false);
   for (const VertexId other : wanted) setLinked(query, other, true);
-}
-
-void Roadmap::keepBestEdges() {
-  using Worth = std::tuple<std::size_t, double, PosePair, VertexId, VertexId>;
-  std::vector<Worth> pairs;
-  for (VertexId a = 0; a < m_graph.vertexIdEnd(); ++a) {
-    if (!m_nearest->contains(a)) continue;
-    const auto& nearest = m_nearest->of(a);
-    for (std::size_t i = 0; i < nearest.size(); ++i) {
-      const auto [low, high] = std::minmax(a, nearest[i].id);
-      pairs.emplace_back(i, nearest[i].distance, PosePair(pose(low), pose(high)), low, high);
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  std::set<std::pair<VertexId, VertexId>> best;
-  for (const auto& [place, distance, poses, a, b] : pairs)
-    if (best.size() < m_mostEdges) best.emplace(a, b);
-  for (const auto& [place, distance, poses, a, b] : pairs) setLinked(a, b, best.count({a, b}) > 0);
 }
 
 void Roadmap::refresh(const std::vector<Column>& changedTiles) {

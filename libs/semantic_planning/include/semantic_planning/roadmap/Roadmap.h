@@ -71,9 +71,8 @@ class Roadmap {
   void linkOneWay(VertexId from, VertexId to);
   void keepLength(EdgeId e, double length);
   void setLinked(VertexId a, VertexId b, bool linked);
-  void keepBestEdges();
-  void reconcile(const std::vector<std::pair<VertexId, VertexId>>& pairs);
-  void reconcileQueryVertices();
+  std::set<std::pair<VertexId, VertexId>> neighbors() const;
+  void reconcile();
   void reconcileQueryVertex(VertexId query);
   void reevaluate(EdgeId e);
   void keepPose(VertexId v, const GroundPose& pose);
