@@ -102,7 +102,7 @@ ExploreTask exploreTask(const Cli& cli) {
   for (const auto& term : task.weights.terms)
     for (const auto& group : term.groups)
       for (const int id : group)
-        if (term.weight > 0) task.ground.insert(static_cast<semantic_types::ClassId>(id));
+        if (term.weight > 0) task.classes.insert(static_cast<semantic_types::ClassId>(id));
   return task;
 }
 
