@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "KnownShare.h"
 #include "simulated_drive/DriveLoop.h"
 
 namespace drive_study {
@@ -30,65 +31,6 @@ semantic_planning::PlannerOptions plannerOf(const simulated_drive::DriveConfig& 
   options.roadmap.kind = semantic_planning::GraphKind::HaltonDrivable;
   return options;
 }
-
-/** Counts the columns that a map has right, of relevant ground that nothing stands on. */
-class KnownGround {
- public:
-  KnownGround(SemanticOcTree& map, const World& world, const ExploreTask& task)
-      : m_map(map),
-        m_world(world),
-        m_classes(task.ground),
-        m_far(task.within),
-        m_follower(map.follow()) {
-    for (double x = -m_far; x < m_far; x += map.getResolution())
-      for (double y = -m_far; y < m_far; y += map.getResolution()) m_all += isOne(x, y);
-  }
-  double share() {
-    for (const auto& tile : m_follower.tiles().tiles) m_tiles[{tile[0], tile[1]}] = true;
-    for (auto& [tile, isStale] : m_tiles)
-      if (std::exchange(isStale, false)) look(tile);
-    return static_cast<double>(m_known.size()) / static_cast<double>(std::max(1, m_all));
-  }
-
- private:
-  using Column = semantic_planning::Column;
-  bool isOne(double x, double y) const {
-    constexpr double kAbove = 0.3;  // m
-    if (std::max(std::abs(x), std::abs(y)) > m_far) return false;
-    if (m_classes.count(m_world.groundClass(x, y)) == 0) return false;
-    const double z = m_world.groundHeight(x, y) + kAbove;
-    return m_world.at({x, y, z}).state == synthetic_world::PointTruth::State::Free;
-  }
-  void look(Column tile) {
-    const double voxel = m_map.getResolution();
-    for (int x = tile.x; x < tile.x + 8; ++x)
-      for (int y = tile.y; y < tile.y + 8; ++y) {
-        const double wx = semantic_octree::centerOf(x, voxel),
-                     wy = semantic_octree::centerOf(y, voxel);
-        if (hasRight(x, y, semantic_octree::keyOf(m_world.groundHeight(wx, wy), voxel)) &&
-            isOne(wx, wy))
-          m_known.insert({x, y});
-        else
-          m_known.erase({x, y});
-      }
-  }
-  bool hasRight(int x, int y, int z) const {
-    for (int k = z + 1; k >= z - 1; --k) {
-      const auto state = m_map.query(semantic_octree::octomapKey(x, y, k));
-      if (m_classes.count(state.likeliestClass) > 0) return true;
-    }
-    return false;
-  }
-
-  SemanticOcTree& m_map;
-  const World& m_world;
-  const std::set<ClassId> m_classes;
-  const double m_far;
-  semantic_octree::MapFollower m_follower;
-  std::map<Column, bool> m_tiles;
-  std::set<Column> m_known;
-  int m_all = 0;
-};
 
 class Glide {
  public:
@@ -185,17 +127,27 @@ class Glide {
   /** A part of the way, until it is time to choose again, or the way is not free. */
   void glide(const DrivePath& path, const View& view) {
     constexpr double kStep = 0.2, kBetweenLooks = 1, kBetweenChoices = 5;  // m
+    bool isFirst = true;
     for (double s = 0; s < path.length() && s < kBetweenChoices;) {
       const double step = std::min(kStep, path.length() - s);
       s += step;
       move(semantic_driving::poseOf(path.at(s)), step);
       if (m_meters - m_lookedAt < kBetweenLooks) continue;
-      look();
+      std::exchange(isFirst, false) ? lookAsPromised() : look();
       if (!m_check.judge(path, s).isFree()) return;
     }
     if (path.length() > kBetweenChoices) return;
     look();
     m_strategy->done(view);
+  }
+
+  /** The first look after a choice: the map is as it was promised by. */
+  void lookAsPromised() {
+    const double promised = m_strategy->promise(m_pose, z());
+    const long before = m_known.columns();
+    look();
+    const long came = m_known.columns() - before;
+    m_trial.promises.push_back({promised, static_cast<double>(came)});
   }
 
   /** From where it must not be, along its track. */
@@ -223,7 +175,7 @@ class Glide {
   SemanticPlanner m_planner;
   semantic_driving::PathCheck m_check;
   simulated_drive::SimulatedSensors m_sensors;
-  KnownGround m_known;
+  KnownShare m_known;
   std::unique_ptr<ViewStrategy> m_strategy;
   synthetic_world::Footprint m_footprint;
   ExploreTrial m_trial;
@@ -235,9 +187,40 @@ class Glide {
 }  // namespace
 
 double ExploreTrial::metersTo(double share) const {
-  for (const KnownShare& k : known)
+  for (const KnownAfter& k : known)
     if (k.share >= share) return k.meters;
   return std::numeric_limits<double>::infinity();
+}
+
+namespace {
+
+/** Equal values have the mean of their ranks. */
+std::vector<double> ranksOf(const std::vector<double>& values) {
+  std::vector<double> sorted = values, ranks;
+  std::sort(sorted.begin(), sorted.end());
+  for (const double value : values) {
+    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), value);
+    ranks.push_back(static_cast<double>((first - sorted.begin()) + (last - sorted.begin())) / 2);
+  }
+  return ranks;
+}
+
+double correlationOf(const std::vector<double>& a, const std::vector<double>& b) {
+  const double middle = static_cast<double>(a.size()) / 2;
+  double ab = 0, aa = 0, bb = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double x = a[i] - middle, y = b[i] - middle;
+    ab += x * y, aa += x * x, bb += y * y;
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+}  // namespace
+
+double ExploreTrial::promiseAgainstWhatCame() const {
+  std::vector<double> promised, came;
+  for (const KeptPromise& p : promises) promised.push_back(p.promised), came.push_back(p.came);
+  return correlationOf(ranksOf(promised), ranksOf(came));
 }
 
 ExploreTrial explore(const simulated_drive::DriveConfig& config,
@@ -252,7 +235,7 @@ std::string toCsv(const std::vector<ExploreTrial>& trials) {
   std::ostringstream out;
   out << "scene,number,strategy,meters,known,end\n";
   for (const ExploreTrial& t : trials)
-    for (const KnownShare& k : t.known)
+    for (const KnownAfter& k : t.known)
       out << t.scene << ',' << t.number << ',' << strict_files::nameIn(choicesOf(t.how), t.how)
           << ',' << k.meters << ',' << k.share << ',' << strict_files::csvField(t.end) << '\n';
   return out.str();

@@ -19,16 +19,22 @@ inline strict_files::Choices<Exploring> choicesOf(Exploring) {
           {"relevant", Exploring::Relevant}};
 }
 
-/** What is looked for: the weights, and the ground that is to be known in the end. */
+/** What is looked for: the weights, and the ground or things that are to be known in the end. */
 struct ExploreTask {
   tree_abstraction::AbstractionWeights weights;
-  std::set<semantic_types::ClassId> ground;  ///< classes of all that is relevant
-  double within = 50;                        ///< m from the world's middle, along x and y
+  std::set<semantic_types::ClassId> classes;  ///< classes of all that is relevant
+  double within = 50;                         ///< m from the world's middle, along x and y
 };
 
-/** How much of the relevant ground a map knows, after so many meters. */
-struct KnownShare {
+/** How much of it a map knows, after so many meters. */
+struct KnownAfter {
   double meters = 0, share = 0;
+};
+
+/** The first look after a choice. */
+struct KeptPromise {
+  double promised = 0;  ///< nats
+  double came = 0;      ///< columns that are right since
 };
 
 struct ExploreTrial {
@@ -36,7 +42,8 @@ struct ExploreTrial {
   int number = 0;
   Exploring how = Exploring::Relevant;
   mrpt::math::TPose2D start;
-  std::vector<KnownShare> known;
+  std::vector<KnownAfter> known;
+  std::vector<KeptPromise> promises;
   std::string end;  ///< why it is over
   int collisions = 0;
   std::vector<mrpt::math::TPose2D> track;
@@ -45,6 +52,8 @@ struct ExploreTrial {
   double share() const { return known.empty() ? 0 : known.back().share; }
   /** Meters until so much was known; infinite: never. */
   double metersTo(double share) const;
+  /** Rank correlation of what looks promised and what came (Spearman); nan: fewer than two. */
+  double promiseAgainstWhatCame() const;
 };
 
 /** A robot that glides along planned paths, without time, and looks around each meter: where it

@@ -95,7 +95,7 @@ ExploreTask exploreTask(const Cli& cli) {
   for (const auto& term : task.weights.terms)
     for (const auto& group : term.groups)
       for (const int id : group)
-        if (term.weight > 0) task.ground.insert(static_cast<semantic_types::ClassId>(id));
+        if (term.weight > 0) task.classes.insert(static_cast<semantic_types::ClassId>(id));
   return task;
 }
 
@@ -103,8 +103,10 @@ void print(const ExploreTrial& trial) {
   notes() << trial.scene << ' ' << trial.number << ", "
           << strict_files::nameIn(choicesOf(trial.how), trial.how) << ": 80 % after "
           << trial.metersTo(0.8) << " m, 90 % after " << trial.metersTo(0.9) << " m, "
-          << std::lround(100 * trial.share()) << " % after " << trial.meters() << " m; "
-          << trial.end << std::endl;
+          << std::lround(100 * trial.share()) << " % after " << trial.meters() << " m; ";
+  if (const double r = trial.promiseAgainstWhatCame(); std::isfinite(r))
+    notes() << "rank correlation of promises with what came " << std::round(100 * r) / 100 << "; ";
+  notes() << trial.end << std::endl;
 }
 
 void exploreScene(const std::string& name, const Cli& cli,

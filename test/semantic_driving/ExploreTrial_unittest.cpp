@@ -26,7 +26,7 @@ ExploreTask lookingFor(const std::set<int>& classes, const std::set<ClassId>& gr
   ExploreTask task;
   task.weights.terms = {
       tree_abstraction::relevant("it", 1, std::vector<int>(classes.begin(), classes.end()))};
-  task.ground = ground;
+  task.classes = ground;
   task.within = 20;
   return task;
 }

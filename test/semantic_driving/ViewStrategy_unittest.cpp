@@ -131,6 +131,32 @@ TEST_F(ViewStrategies, lookForGroundBelowWhereItWasExpectedIfThatIsFree) {
   EXPECT_GT(view->promise, expected->promise / 2);
 }
 
+namespace {
+
+/** What is left to see of walls 3 m beyond the edge of a road, where a wall was seen at the edge,
+ * between two heights (m). */
+double leftOfWalls(double low, double high) {
+  PaintedWorld world;
+  world.floor(-8, 8, -8, 8, PaintedWorld::Road).box(8, 8.4, -8, 8, low, high, PaintedWorld::Wall);
+  const SemanticPlanner over = plannerOver(world);
+  AbstractionWeights weights;
+  weights.terms = {tree_abstraction::relevant("walls", 1, {PaintedWorld::Wall})};
+  ExploreOptions options;
+  options.sensor = {6, -60, 15, 80};
+  const auto strategy = relevantViews(over, world.map(), weights, options);
+  strategy->next({0, 0, 0}, 0);
+  return strategy->left(over.ground().columnAt(11, 0));
+}
+
+}  // namespace
+
+TEST(RelevantViews, expectThingsNearThoseThatRiseFromTheGround) {
+  const double roof = leftOfWalls(2.2, 2.4), notConnectedYet = leftOfWalls(0.8, 1);
+  EXPECT_GT(leftOfWalls(0, 1.2), 2 * roof);
+  EXPECT_GT(leftOfWalls(0.2, 1.2), 2 * roof);  // as a car's body
+  EXPECT_NEAR(notConnectedYet, roof, 0.01 * roof);
+}
+
 TEST_F(ViewStrategies, neverChooseAViewTwice) {
   const SemanticPlanner over = planner();
   for (const auto& strategy :

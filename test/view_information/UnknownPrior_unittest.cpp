@@ -253,14 +253,16 @@ TEST(GainField, sweepIsTheTreeOfItsVoxels) {
     const Gain unknown = s.prior.patch(0, 0).at(key[0], key[1], key[2]);
     const Gain gain = s.field.at(key).value_or(unknown);
     if (!cells.empty()) {
-      reached.push_back(left[static_cast<std::size_t>(parents[cells.size()])]);
-      left.push_back(reached.back() * static_cast<double>(gain.pass));
+      const double here = left[static_cast<std::size_t>(parents[cells.size()])];
+      left.push_back(here * static_cast<double>(gain.pass));
+      reached.push_back(here * static_cast<double>(view.weight(v)));
       beliefs.push_back(nothingKnown(3));
       if (const auto leaf = s.map.search(key))
         s.map.belief(leaf).distribution(3, beliefs.back().data());
     }
     cells.push_back(cells.empty() ? TreeCell{-1, 1, 0}
-                                  : TreeCell{parents[cells.size()], gain.pass, gain.gain});
+                                  : TreeCell{parents[cells.size()], gain.pass,
+                                             static_cast<double>(view.weight(v) * gain.gain)});
   }
   const double tree = informationOfTree(cells);
   EXPECT_GT(tree, 1);
@@ -279,38 +281,77 @@ TEST(GainField, sweepIsTheTreeOfItsVoxels) {
   EXPECT_NEAR(ofQuarters, growth.upper, 1e-9 * growth.upper);
 }
 
-/** The farther half of a view's reach has fewer voxels, which stand for all. */
-TEST(GainField, sweepOfAFarViewIsNearTheTreeOfAllVoxels) {
+/** A view's beams stand for all voxels between its elevations. */
+TEST(GainField, sweepOfAFarViewIsNearTheMeanOfManyStraightBeams) {
   Scene s;
   insertFloor(s.map, kRoad, 9);
   s.field.update();
-  const ViewTemplate view({10, -60, 5, 360}, kVoxel);
+  constexpr double kLow = -60, kHigh = 5, kFar = 10 / kVoxel;  // degrees, voxels
+  const ViewTemplate view({10, kLow, kHigh, 360}, kVoxel);
   const auto from = keyAt(s.map, 0.5, 0.3, 1);
-  const auto gainAt = [&](int x, int y, int z) {
-    const Gain unknown = s.prior.patch(0, 0).at(from[0] + x, from[1] + y, from[2] + z);
-    return s.field.at(semantic_octree::octomapKey(from[0] + x, from[1] + y, from[2] + z))
-        .value_or(unknown);
-  };
-  const int reach = view.reach();
-  double all = 0, count = 0, weights = 0;
-  for (int x = -reach; x <= reach; ++x)
-    for (int y = -reach; y <= reach; ++y)
-      for (int z = -reach; z <= reach; ++z) {
-        const double flat = std::hypot(x, y), up = std::atan2(z, flat) * 180 / M_PI;
-        const int shell = std::max({std::abs(x), std::abs(y), std::abs(z)});
-        if (shell == 0 || std::hypot(flat, z) * kVoxel > 10 || up < -60 || up > 5) continue;
-        double reached = 1;
-        std::array<int, 3> v{x, y, z};
-        for (int i = shell; i > 1; --i) {
-          for (int& a : v) a = static_cast<int>(std::lround(a * (i - 1.0) / i));
-          reached *= gainAt(v[0], v[1], v[2]).pass;
-        }
-        all += reached * gainAt(x, y, z).gain, ++count;
+  const auto shells = static_cast<std::size_t>(view.reach()) + 1;
+  std::vector<double> seen(shells, 0), beams(shells, 0), voxels(shells, 0);
+  for (double up = kLow; up <= kHigh; up += 0.5)
+    for (double around = 0; around < 360; around += 1) {
+      const double flat = std::cos(up * M_PI / 180);
+      const std::array<double, 3> d{flat * std::cos(around * M_PI / 180),
+                                    flat * std::sin(around * M_PI / 180),
+                                    std::sin(up * M_PI / 180)};
+      const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+      double reached = 1;
+      for (std::size_t shell = 1; static_cast<double>(shell) <= kFar * largest; ++shell) {
+        std::array<int, 3> key{};
+        for (std::size_t a = 0; a < 3; ++a)
+          key[a] =
+              from[a] + static_cast<int>(std::lround(static_cast<double>(shell) * d[a] / largest));
+        const Gain gain = s.field.at(semantic_octree::octomapKey(key[0], key[1], key[2]))
+                              .value_or(s.prior.patch(0, 0).at(key[0], key[1], key[2]));
+        seen[shell] += reached * static_cast<double>(gain.gain), ++beams[shell];
+        reached *= static_cast<double>(gain.pass);
       }
-  for (const auto& v : view.voxels()) weights += v.shell > 0 ? view.weight(v) : 0;
-  EXPECT_NEAR(weights, count, 0.03 * count);
-  EXPECT_LT(view.voxels().size(), 0.6 * count);
+    }
+  for (const auto& v : view.voxels()) voxels[v.shell] += static_cast<double>(view.weight(v));
+  double all = 0, count = 0;
+  for (std::size_t shell = 1; shell < shells; ++shell) {
+    if (beams[shell] > 0) all += voxels[shell] * seen[shell] / beams[shell];
+    count += voxels[shell];
+  }
   EXPECT_NEAR(gainOfHeading(s.field.sweep(view, s.prior, from), 0, 360), all, 0.15 * all);
+  const double sphere = 4.0 / 3 * M_PI * std::pow(kFar, 3);
+  const double share = (std::sin(kHigh * M_PI / 180) - std::sin(kLow * M_PI / 180)) / 2;
+  EXPECT_NEAR(count, share * sphere, 0.05 * share * sphere);
+}
+
+namespace {
+
+/** Ground of one voxel's height that is worth a nat wherever it is not known, and air. */
+class FlatGround : public UnknownPrior {
+ public:
+  explicit FlatGround(int ground) {
+    m_patch.ground = ground, m_patch.top = ground + 10;
+    m_patch.onGround = {0.05F, 1}, m_patch.above = {1, 0};
+  }
+  const UnknownPatch& patch(int, int) override { return m_patch; }
+  bool knowsAir() const override { return true; }
+
+ private:
+  UnknownPatch m_patch;
+};
+
+}  // namespace
+
+/** At 10 m a beam is a voxel above the ground for 8 voxels before it meets it. */
+TEST(GainField, sweepSeesFlatGroundBehindTheGroundThatIsKnown) {
+  Scene s;
+  for (int i = 0; i < 12; ++i) insertFloor(s.map, kRoad, 5);
+  s.field.update();
+  FlatGround ground(keyAt(s.map, 0, 0, -0.05)[2]);
+  const ViewTemplate view({10, -45, 15, 360}, kVoxel);
+  const double promise =
+      gainOfHeading(s.field.sweep(view, ground, keyAt(s.map, 0, 0, 1.25)), 0, 360);
+  // Beams between those that end at 5 and at 10 m, each for the voxels around it.
+  const double degrees = (std::atan(1.2 / 5) - std::atan(1.2 / 10)) * 180 / M_PI;
+  EXPECT_GT(promise, degrees / 2 * 108);
 }
 
 TEST(GainField, knowsAsMuchAsTheOccupiedVoxelsTell) {

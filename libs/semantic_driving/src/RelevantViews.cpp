@@ -18,6 +18,7 @@ using semantic_planning::Column;
 using semantic_planning::Ground;
 using semantic_planning::GroundPoint;
 using semantic_planning::SemanticPlanner;
+using semantic_planning::Surface;
 using namespace view_information;
 
 namespace {
@@ -80,6 +81,7 @@ class RelevantViews : public ViewStrategy {
   void done(const View& view) override;
   std::string conclusion() const override;
   Bounds growth() const override;
+  double promise(const TPose2D& pose, double z) override;
   double left(Column c) override;
 
  private:
@@ -91,6 +93,10 @@ class RelevantViews : public ViewStrategy {
   };
   void follow(const TPose2D& from, double z);
   void learnTile(Column first, const GroundPoint& here);
+  void learnThing(Column c, const GroundPoint& here);
+  const Surface* surfaceOf(Column c) const;
+  const Surface* groundOf(Column c, const GroundPoint& here) const;
+  ClassId risingFrom(int ground, Column c) const;
   octomap::OcTreeKey sensorAt(Column column, double z) const;
   std::vector<Candidate> candidates(const GroundFlood& flood, double heading);
   void addBest(const ViewPlace& place, double heading, std::vector<Candidate>& candidates);
@@ -128,6 +134,12 @@ double distanceOf(const View& a, const View& b) {
 
 double scoreOf(const View& view) { return view.promise / (view.way + kSetOut); }
 
+/** Along whose middle one looks nearly. */
+int sectorOf(double heading) {
+  const double turned = (heading + M_PI) / (2 * M_PI) * ViewTemplate::kHeadings;
+  return static_cast<int>(std::lround(turned - 0.5));
+}
+
 /** Field and prior follow the map. */
 void RelevantViews::follow(const TPose2D& from, double z) {
   const semantic_octree::TileChange change = m_field.update();
@@ -139,18 +151,56 @@ void RelevantViews::follow(const TPose2D& from, double z) {
   for (const Column& first : std::exchange(m_toLearn, {})) learnTile(first, *here);
 }
 
+/** The lowest one that was seen; null: there is none. */
+const Surface* RelevantViews::surfaceOf(Column c) const {
+  for (const Surface& surface : m_ground.surfaces(c))
+    if (!surface.filled && surface.drivable) return &surface;
+  return nullptr;
+}
+
 /** Ground is what the vehicle's own ground goes on to, whether it may be driven on or not. */
+const Surface* RelevantViews::groundOf(Column c, const GroundPoint& here) const {
+  const Surface* surface = surfaceOf(c);
+  return surface && m_ground.connected(here, {c, *surface}) ? surface : nullptr;
+}
+
+/** And around it: what stands there may rise from ground of the tile. */
 void RelevantViews::learnTile(Column first, const GroundPoint& here) {
-  for (int x = first.x; x < first.x + kTile; ++x)
-    for (int y = first.y; y < first.y + kTile; ++y)
-      for (const auto& surface : m_ground.surfaces({x, y})) {
-        if (surface.filled || !surface.drivable) continue;
-        if (m_ground.connected(here, {{x, y}, surface}))
-          m_learned->learn(x, y, surface.z, surface.classId);
-        else
-          m_toLearn.insert(first);
-        break;
+  for (int x = first.x - 1; x <= first.x + kTile; ++x)
+    for (int y = first.y - 1; y <= first.y + kTile; ++y) {
+      if (const Surface* ground = groundOf({x, y}, here)) {
+        m_learned->learn(x, y, ground->z, ground->classId);
+        continue;
       }
+      if (surfaceOf({x, y})) m_toLearn.insert({x - x % kTile, y - y % kTile});
+      learnThing({x, y}, here);
+    }
+}
+
+/** Nobody sees the ground below a car or a wall: it counts as ground of its class, where it rises
+ * from ground beside it. Roofs, and ground that is not connected yet, do not. */
+void RelevantViews::learnThing(Column c, const GroundPoint& here) {
+  if (!m_ground.isOccupied(c, 0, semantic_octree::kNumKeys)) return;
+  for (const Column& d : kNeighbors) {
+    const Surface* ground = groundOf({c.x + d.x, c.y + d.y}, here);
+    const ClassId id = ground ? risingFrom(ground->z, c) : semantic_types::kNoClass;
+    if (id != semantic_types::kNoClass) return m_learned->learn(c.x, c.y, ground->z, id);
+  }
+}
+
+/** The class of what is higher than a step above ground of this height, and begins at most a step
+ * above that. */
+ClassId RelevantViews::risingFrom(int ground, Column c) const {
+  constexpr double kTall = 2.6;  // m
+  const int foot = ground + m_ground.step() + 1;
+  const int top = ground + static_cast<int>(kTall / m_ground.voxelSize());
+  if (!m_ground.isOccupied(c, foot, top)) return semantic_types::kNoClass;
+  for (int z = foot; z >= ground - m_ground.step(); --z) {
+    const auto voxel = m_ground.map().search(semantic_octree::octomapKey(c.x, c.y, z));
+    if (voxel && m_ground.map().isNodeOccupied(voxel) && voxel.hasClassRecord())
+      return m_ground.map().belief(voxel).ids[0];
+  }
+  return semantic_types::kNoClass;
 }
 
 /** \param z of the ground, m */
@@ -272,9 +322,14 @@ void RelevantViews::done(const View& view) { m_done.add(view.pose); }
 
 Bounds RelevantViews::growth() const {
   if (!m_most) return {};
-  const auto sector = static_cast<int>(
-      std::lround((m_most->view.pose.phi + M_PI) / (2 * M_PI) * ViewTemplate::kHeadings - 0.5));
-  return m_field.growth(m_view, *m_prior, sensorAt(m_most->column, m_most->view.z), sector);
+  return m_field.growth(m_view, *m_prior, sensorAt(m_most->column, m_most->view.z),
+                        sectorOf(m_most->view.pose.phi));
+}
+
+double RelevantViews::promise(const TPose2D& pose, double z) {
+  const auto from = sensorAt(m_ground.columnAt(pose.x, pose.y), z);
+  return gainOfHeading(m_field.sweep(m_view, *m_prior, from), sectorOf(pose.phi),
+                       m_view.shape().width);
 }
 
 std::string RelevantViews::conclusion() const {

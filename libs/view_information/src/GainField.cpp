@@ -265,7 +265,7 @@ Bounds GainField::growth(const ViewTemplate& view, UnknownPrior& prior,
   std::vector<double> reach;
   lookAround(view, prior, from, [&](const ViewTemplate::Voxel& v, float reached, float) {
     if (!view.sees(v, sector)) return;
-    reach.push_back(static_cast<double>(reached));
+    reach.push_back(static_cast<double>(view.weight(v) * reached));
     beliefs.push_back(m_nothingKnown);
     const auto leaf =
         m_map.search(semantic_octree::octomapKey(from[0] + v.x, from[1] + v.y, from[2] + v.z));

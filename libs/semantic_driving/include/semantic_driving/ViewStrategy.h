@@ -59,6 +59,9 @@ class ViewStrategy {
    * objective of a compressed tree of the weights (GainField::growth()), nats summed over voxels; 0
    * unless it is predicted. The map has to be as it was. */
   virtual view_information::Bounds growth() const { return {}; }
+  /** What a look from a pose on ground of height z is expected to tell, by the map as it was in the
+   * last call of next(), nats; 0 unless it is predicted. */
+  virtual double promise(const mrpt::math::TPose2D&, double) { return 0; }
   /** What looking at a column of the map (keys) may still tell, nats; 0 unless it is
    * predicted. */
   virtual double left(semantic_planning::Column) { return 0; }

@@ -80,8 +80,8 @@ class LearnedPrior : public UnknownPrior {
   /** \param map must outlive this. */
   LearnedPrior(const semantic_octree::SemanticOcTree& map, const Question& question);
 
-  /** The ground of one column of voxels, x, y, z: keys. What stands on it is looked up in the map.
-   */
+  /** The ground of one column of voxels, x, y, z: keys, or what hides it. What stands on it is
+   * looked up in the map. */
   void learn(int x, int y, int z, ClassId ground);
   const UnknownPatch& patch(int x, int y) override;
   /** The prior of a patch for who only looks on: nothing is remembered. */

@@ -1,0 +1,55 @@
+#pragma once
+#include <semantic_octree/MapFollower.h>
+#include <semantic_octree/SemanticOcTree.h>
+#include <synthetic_world/World.h>
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "ExploreTrial.h"
+
+namespace drive_study {
+
+/** How much of what is looked for a map has right: columns of ground that nothing stands on. If
+ * there is no ground of these classes, things: one is known if a quarter of its outer columns is,
+ * which is one side of it. */
+class KnownShare {
+ public:
+  KnownShare(semantic_octree::SemanticOcTree& map, const synthetic_world::World& world,
+             const ExploreTask& task);
+  double share();
+  /** Of what is known, or of things' sides, after the last call of share(). */
+  long columns() const;
+
+ private:
+  using Column = semantic_octree::Column;
+  using ClassId = semantic_types::ClassId;
+  struct Thing {
+    ClassId id;
+    std::vector<Column> outer;
+  };
+
+  bool isWithin(double x, double y) const;
+  bool isGround(double x, double y) const;
+  ClassId thingAt(Column c) const;
+  void findThings();
+  Thing take(Column first, std::map<Column, ClassId>& columns) const;
+  void lookAtTile(Column first);
+  bool hasRightGround(Column c) const;
+  bool hasRight(Column c, ClassId thing) const;
+  long rightOf(const Thing& thing) const;
+  bool isKnown(const Thing& thing) const;
+  double centerOf(int key) const { return semantic_octree::centerOf(key, m_map.getResolution()); }
+
+  semantic_octree::SemanticOcTree& m_map;
+  const synthetic_world::World& m_world;
+  const std::set<ClassId> m_classes;
+  const double m_far;
+  semantic_octree::MapFollower m_follower;
+  std::set<Column> m_known;  ///< columns of ground
+  int m_all = 0;             ///< the same, of the world
+  std::vector<Thing> m_things;
+};
+
+}  // namespace drive_study
