@@ -26,10 +26,11 @@ constexpr std::size_t kFew = 2;
 constexpr double kSteps = 256;
 /** Log-odds (ln 25) of two classes from which on a voxel is of one of them. */
 constexpr double kOfOne = 3.2;
-/** Edge of a place in voxels (2^3): what errs there may err together. */
-constexpr int kBitsOfPlace = 3;
-/** So many labels of a voxel, from the second on, are asked whether factors make them likelier. */
-constexpr std::size_t kAskedLabels = 8;
+/** Labels err if more voxels than one in so many differ away from borders: of right labels one in
+ * 70 to 3000 do, of labels that are wrong in 2 % one in 40, of 5 to 10 % one in 16 to 7. */
+constexpr double kDiffering = 25;
+/** Voxels that were looked at before, whose labels did not differ. */
+constexpr double kVoxelsBefore = 100;
 
 /** Voxels on each side of the map's origin. */
 constexpr int kHalf = 1 << 15;
@@ -71,123 +72,6 @@ bool isAtBorder(const SemanticOcTree& map, const octomap::OcTreeKey& voxel, Clas
   }
   return hasA && hasB;
 }
-
-/** A voxel's labels, and what the map believes of it. */
-struct Seen {
-  std::uint64_t voxel;
-  std::string labels;
-  SemanticOcTree::Belief belief;  ///< if it is occupied
-  bool isOccupied;
-  bool isAtBorder;  ///< its first two labels differ, and both lie beside
-
-  /** The cube of voxels in which it lies. */
-  std::uint64_t place() const {
-    constexpr std::uint64_t kRest = (1 << kBitsOfPlace) - 1;
-    return voxel & ~(kRest << 32 | kRest << 16 | kRest);
-  }
-  int half() const { return static_cast<int>(place() * 0x9e3779b97f4a7c15u >> 63); }
-};
-
-struct Found {
-  Calibration calibration;
-  LabelProcess process;  ///< with factors, the one that takes labels for right at first
-};
-
-/** Finds what makes likely what labels say, from the voxels of one half of the places, or all. */
-class Finder {
- public:
-  Finder(int numClasses, double accuracy) : m_numClasses(numClasses), m_accuracy(accuracy) {}
-
-  Found find(const std::vector<Seen>& voxels, bool hasFactors, int half = kAll) const {
-    const auto isAsked = [half](const Seen& s) { return half == kAll || s.half() == half; };
-    LabeledVoxels again;
-    for (const Seen& s : voxels)
-      if (isAsked(s) && s.labels.size() > 1) ++again[s.labels];
-    std::vector<LabelProcess> processes;
-    processes.emplace_back(again, m_numClasses, m_accuracy, kLabelsOfFit);
-    if (hasFactors)
-      processes.emplace_back(again, m_numClasses, m_accuracy, kLabelsOfFit, kLabelsOfMatrix);
-    const double asRight = hasFactors ? 1 - processes[0].leastCorrelation() : 0;
-    CalibrationFit fit;
-    for (const Seen& s : voxels) {
-      if (!isAsked(s) || !s.isOccupied) continue;
-      std::vector<double> q = processes[0].classesOf(s.labels);
-      if (hasFactors) {
-        const std::vector<double> right = processes[1].classesOf(s.labels);
-        for (std::size_t k = 0; k < q.size(); ++k) q[k] += asRight * (right[k] - q[k]);
-      }
-      fit.add(s.belief, q, static_cast<double>(s.labels.size()));
-    }
-    const std::vector<double> none(hasFactors ? static_cast<std::size_t>(m_numClasses) : 0, 1.0);
-    return {fit.fit({0.7, 0.1, none}), processes.back()};
-  }
-  /** Whether factors that one half of the places finds make labels of the other half likelier,
-   * away from borders: all labels, and those of voxels whose labels before differ, which right
-   * ones do at borders alone. */
-  bool factorsHelp(const std::vector<Seen>& voxels) const {
-    Gain ofAll, whereTheyDiffer;
-    for (const int half : {0, 1}) {
-      const Found with = find(voxels, true, half), without = find(voxels, false, half);
-      std::map<std::string, double> known;
-      for (const Seen& s : voxels) {
-        if (s.half() == half || s.isAtBorder) continue;
-        const std::size_t alike =
-            std::min(s.labels.find_first_not_of(s.labels[0]), s.labels.size());
-        for (std::size_t n = 2; n <= std::min(s.labels.size(), kAskedLabels + 1); ++n) {
-          const auto [told, isNew] = known.try_emplace(s.labels.substr(0, n));
-          if (isNew) told->second = gain(told->first, with, without.calibration);
-          ofAll.add(s.place(), told->second);
-          if (n > alike + 1) whereTheyDiffer.add(s.place(), told->second);
-        }
-      }
-    }
-    return ofAll.isSure() && whereTheyDiffer.isSure();
-  }
-
- private:
-  static constexpr int kAll = -1;
-  /** A sum over places, which err each by itself. */
-  class Gain {
-   public:
-    void add(std::uint64_t place, double gain) { m_ofPlaces[place] += gain; }
-    /** Whether it is more than its standard error. */
-    bool isSure() const {
-      double sum = 0, squares = 0;
-      for (const auto& [place, gain] : m_ofPlaces) sum += gain, squares += gain * gain;
-      return sum > 0 && sum * sum > squares;
-    }
-
-   private:
-    std::map<std::uint64_t, double> m_ofPlaces;
-  };
-
-  /** How much more likely a voxel's last label is with factors, given those before it: ln p / q. */
-  double gain(const std::string& labels, const Found& with, const Calibration& without) const {
-    const std::string before = labels.substr(0, labels.size() - 1);
-    const double p = with.process.ofLast(labels, stated(before, with.calibration));
-    return exactLogarithm(p / with.process.ofLast(labels, stated(before, without)));
-  }
-  /** What a map states whose voxel got these labels, one of each scan. */
-  std::vector<double> stated(const std::string& labels, const Calibration& calibration) const {
-    const auto& [power, shared, factors] = calibration;
-    std::vector<double> votes(static_cast<std::size_t>(m_numClasses)), p(votes.size());
-    for (const char label : labels) ++votes[static_cast<unsigned char>(label) - std::size_t{1}];
-    const double most = *std::max_element(votes.begin(), votes.end()),
-                 odds = exactLogarithm(m_accuracy * (m_numClasses - 1) / (1 - m_accuracy));
-    double sum = 0, named = 0;
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      p[k] = exactExponential(power * odds * (votes[k] - most));
-      sum += p[k] *= factors.empty() ? 1 : factors[k];
-      named += votes[k] > 0;
-    }
-    for (std::size_t k = 0; k < p.size(); ++k)
-      p[k] = (1 - shared) / sum * p[k] + (votes[k] > 0 ? shared / named : 0);
-    return p;
-  }
-
-  int m_numClasses;
-  double m_accuracy;
-};
 
 }  // namespace
 
@@ -249,6 +133,17 @@ LabeledVoxels Calibrator::seenAgain() const {
   return voxels;
 }
 
+bool Calibrator::labelsErr(const SemanticOcTree& map) const {
+  double looked = kVoxelsBefore, differ = 0;
+  for (const auto& [voxel, labels] : m_voxels) {
+    if (labels.size() < 2) continue;
+    ++looked;
+    const auto first = static_cast<ClassId>(labels[0]), second = static_cast<ClassId>(labels[1]);
+    if (first != second && !isAtBorder(map, keyOf(voxel), first, second)) ++differ;
+  }
+  return kDiffering * differ > looked;
+}
+
 std::vector<std::vector<double>> Calibrator::confusion(double accuracy) const {
   return LabelProcess(seenAgain(), m_numClasses, accuracy, kLabelsOfMatrix).counts();
 }
@@ -256,26 +151,41 @@ std::vector<std::vector<double>> Calibrator::confusion(double accuracy) const {
 std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) const {
   const Calibration has = map.filterParameters().calibration;
   std::size_t numLabels = 0;
-  std::vector<Seen> voxels;
-  for (const auto& [voxel, labels] : m_voxels) {
+  for (const auto& [voxel, labels] : m_voxels)
     numLabels += labels.size() - std::min(kFew, labels.size());
-    const octomap::OcTreeKey key = keyOf(voxel);
-    const SemanticOcTreeNode leaf = map.search(key);
-    const bool isThere = leaf && leaf.hasClassRecord() && leaf.getLogOdds() > 0;
-    voxels.push_back({voxel, labels, isThere ? map.belief(leaf) : SemanticOcTree::Belief(), isThere,
-                      labels.size() > 1 && labels[0] != labels[1] &&
-                          isAtBorder(map, key, labels[0], labels[1])});
+  if (numLabels == 0) return [has] { return has; };
+  std::vector<std::pair<std::uint64_t, SemanticOcTree::Belief>> beliefs;
+  for (const auto& [voxel, labels] : m_voxels) {
+    const SemanticOcTreeNode leaf = map.search(keyOf(voxel));
+    if (leaf && leaf.hasClassRecord() && leaf.getLogOdds() > 0)
+      beliefs.emplace_back(voxel, map.belief(leaf));
   }
-  const auto isOccupied = [](const Seen& s) { return s.isOccupied; };
-  if (numLabels == 0 || std::none_of(voxels.begin(), voxels.end(), isOccupied))
-    return [has] { return has; };
+  if (beliefs.empty()) return [has] { return has; };
   const FilterParameters& parameters = map.filterParameters();
-  return [has, numLabels, voxels = std::move(voxels), wasTold = !parameters.classPrior.empty(),
-          finder = Finder(m_numClasses, parameters.accuracy)]() mutable {
-    std::sort(voxels.begin(), voxels.end(),
-              [](const Seen& a, const Seen& b) { return a.voxel < b.voxel; });
-    const bool hasFactors = !wasTold && (!has.factors.empty() || finder.factorsHelp(voxels));
-    Calibration found = finder.find(voxels, hasFactors).calibration;
+  const bool hasFactors = parameters.classPrior.empty() && (!has.factors.empty() || labelsErr(map));
+  return [has, numLabels, hasFactors, beliefs = std::move(beliefs), labels = *this,
+          accuracy = parameters.accuracy]() mutable {
+    std::sort(beliefs.begin(), beliefs.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    const LabeledVoxels seen = labels.seenAgain();
+    const int numClasses = labels.m_numClasses;
+    std::vector<LabelProcess> processes;
+    processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit);
+    if (hasFactors)
+      processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit, kLabelsOfMatrix);
+    const double asRight = hasFactors ? 1 - processes[0].leastCorrelation() : 0;
+    CalibrationFit fit;
+    for (const auto& [voxel, belief] : beliefs) {
+      const std::string& ofVoxel = labels.m_voxels.at(voxel);
+      std::vector<double> q = processes[0].classesOf(ofVoxel);
+      if (hasFactors) {
+        const std::vector<double> right = processes[1].classesOf(ofVoxel);
+        for (std::size_t k = 0; k < q.size(); ++k) q[k] += asRight * (right[k] - q[k]);
+      }
+      fit.add(belief, q, static_cast<double>(ofVoxel.size()));
+    }
+    const std::vector<double> none(hasFactors ? static_cast<std::size_t>(numClasses) : 0, 1.0);
+    Calibration found = fit.fit({0.7, 0.1, none});
     const auto together = [numLabels](double had, double fits) {
       return (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);
     };

@@ -91,23 +91,6 @@ double LabelProcess::shareDrawn(std::size_t earlier) const {
   return (1 - m_correlation) / (1 - m_correlation + m_correlation * static_cast<double>(earlier));
 }
 
-auto LabelProcess::originsOf(const std::string& labels, std::size_t i) const -> Origins {
-  if (i == 0) return {0, 0, 1};
-  const auto now = labels.begin() + static_cast<std::ptrdiff_t>(i);
-  const double drawn = (1 - m_repeated) * shareDrawn(i);
-  const auto same = static_cast<double>(std::count(labels.begin(), now, labels[i]));
-  return {now[-1] == labels[i] ? m_repeated : 0,
-          (1 - m_repeated - drawn) * same / static_cast<double>(i), drawn};
-}
-
-double LabelProcess::ofLast(const std::string& labels, const std::vector<double>& classes) const {
-  const auto [again, urn, drawn] = originsOf(labels, labels.size() - 1);
-  double p = again + urn;
-  for (std::size_t k = 0; k < classes.size(); ++k)
-    p += drawn * classes[k] * m_rows[k][columnOf(labels.back())];
-  return p;
-}
-
 std::vector<double> LabelProcess::classesOf(const std::string& labels) const {
   return classesOf(labels, nullptr);
 }
@@ -117,10 +100,14 @@ std::vector<double> LabelProcess::classesOf(const std::string& labels,
   std::vector<double> p = m_shares;
   if (origins) origins->clear();
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    const auto [again, urn, drawn] = originsOf(labels, i);
+    const auto now = labels.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool again = i > 0 && now[-1] == labels[i];
+    const double repeated = i > 0 ? m_repeated : 0, drawn = (1 - repeated) * shareDrawn(i);
+    const auto same = static_cast<double>(std::count(labels.begin(), now, labels[i]));
+    const double urn = i > 0 ? (1 - repeated - drawn) * same / static_cast<double>(i) : 0;
     for (std::size_t k = 0; k < p.size(); ++k) {
       const double draw = drawn * m_rows[k][columnOf(labels[i])];
-      const double any = again + draw + urn;
+      const double any = (again ? repeated : 0) + draw + urn;
       if (origins) origins->push_back({draw / any, urn / any});
       p[k] *= any;
     }

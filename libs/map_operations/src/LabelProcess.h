@@ -39,8 +39,6 @@ class LabelProcess {
   const std::vector<std::vector<double>>& counts() const { return m_counts; }
   /** p(class k + 1), given a voxel's labels. */
   std::vector<double> classesOf(const std::string& labels) const;
-  /** p(a voxel's last label), given those before it and p(class k + 1). */
-  double ofLast(const std::string& labels, const std::vector<double>& classes) const;
 
  private:
   using Table = std::vector<std::vector<double>>;
@@ -48,12 +46,6 @@ class LabelProcess {
   struct Origin {
     double drawn, urn;
   };
-  /** Where a label may be from: probabilities that it repeats the one before and that it is of the
-   * urn, and the share of the draws. */
-  struct Origins {
-    double again, urn, drawn;
-  };
-  Origins originsOf(const std::string& labels, std::size_t i) const;
   /** \param origins of each label and class */
   std::vector<double> classesOf(const std::string& labels, std::vector<Origin>* origins) const;
   /** Share of the draws among labels that do not repeat the one before. */

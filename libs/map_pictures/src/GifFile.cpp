@@ -12,39 +12,103 @@
 namespace map_pictures {
 namespace {
 
-constexpr int kMostColors = 63;
+constexpr std::size_t kMostColors = 63;
 
-/** At most 63 colors that stand for all of a picture. */
-struct GifPalette {
-  std::vector<cv::Vec3b> colors;     ///< BGR
-  std::vector<GifByteType> indices;  ///< of the pixels that count, row by row
+/** Pixels of nearly one color. */
+struct Cell {
+  int index = 0, count = 0;
+  cv::Vec3d sum;
 
-  /** \param picture BGR \param mask 8 bit, of its size: pixels that count */
-  GifPalette(const cv::Mat& picture, const cv::Mat& mask) {
-    std::vector<cv::Vec3b> pixels;
-    for (int row = 0; row < picture.rows; ++row)
-      for (int col = 0; col < picture.cols; ++col)
-        if (mask.at<std::uint8_t>(row, col)) pixels.push_back(picture.at<cv::Vec3b>(row, col));
-    if (pixels.empty()) return;
-    std::vector<cv::Mat> bgr;
-    cv::split(pixels, bgr);
-    int size = kMostColors;
-    indices.resize(pixels.size());
-    GifColorType coarse[kMostColors];  // of 5 bits a channel
-    if (GifQuantizeBuffer(unsigned(pixels.size()), 1, &size, bgr[2].data, bgr[1].data, bgr[0].data,
-                          indices.data(), coarse) == GIF_ERROR)
-      throw std::bad_alloc();
-    setMeans(pixels, std::size_t(size));
+  double mean(int channel) const { return sum[channel] / count; }
+};
+
+using Cells = std::vector<Cell>;
+
+/** Some of the cells, for which one color will stand. */
+struct Box {
+  Cells::iterator begin, end;
+  int channel = 0;    ///< in which they differ most
+  double spread = 0;  ///< how much, times the root of the number of pixels
+
+  Box(Cells::iterator first, Cells::iterator last) : begin(first), end(last) {
+    double count = 0;
+    for (auto cell = begin; cell != end; ++cell) count += cell->count;
+    for (int c = 0; c < 3; ++c) {
+      const auto [low, high] = std::minmax_element(
+          begin, end, [c](const Cell& a, const Cell& b) { return a.mean(c) < b.mean(c); });
+      const double range = (high->mean(c) - low->mean(c)) * std::sqrt(count);
+      if (range > spread) spread = range, channel = c;
+    }
   }
+
+  /** Where half of the pixels are on each side; both sides have cells. */
+  Cells::iterator median() const {
+    const int c = channel;
+    std::sort(begin, end, [c](const Cell& a, const Cell& b) { return a.mean(c) < b.mean(c); });
+    double count = 0, before = 0;
+    for (auto cell = begin; cell != end; ++cell) count += cell->count;
+    auto middle = begin;
+    while (middle != end - 1 && before + middle->count <= count / 2) before += (middle++)->count;
+    return std::max(middle, begin + 1);
+  }
+};
+
+std::vector<Box> boxesOf(Cells& cells) {
+  if (cells.empty()) return {};
+  std::vector<Box> boxes = {Box(cells.begin(), cells.end())};
+  while (boxes.size() < kMostColors) {
+    const auto widest = std::max_element(
+        boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.spread < b.spread; });
+    if (widest->spread <= 0) break;
+    const auto middle = widest->median();
+    const Box upper(middle, widest->end);
+    *widest = Box(widest->begin, middle);
+    boxes.push_back(upper);
+  }
+  return boxes;
+}
+
+cv::Vec3b meanOf(const Box& box) {
+  cv::Vec3d sum;
+  double count = 0;
+  for (auto cell = box.begin; cell != box.end; ++cell) sum += cell->sum, count += cell->count;
+  return sum / count;
+}
+
+/** At most 63 colors that stand for all of a picture, found by median cut. */
+class GifPalette {
+ public:
+  /** \param picture BGR \param mask 8 bit, of its size: pixels that count */
+  GifPalette(const cv::Mat& picture, const cv::Mat& mask) : m_index(1 << 15, 0) {
+    std::vector<Cell> all(1 << 15);
+    for (int row = 0; row < picture.rows; ++row)
+      for (int col = 0; col < picture.cols; ++col) {
+        if (!mask.at<std::uint8_t>(row, col)) continue;
+        const auto& color = picture.at<cv::Vec3b>(row, col);
+        Cell& cell = all[cellOf(color)];
+        cell.index = cellOf(color);
+        cell.sum += cv::Vec3d(color), ++cell.count;
+      }
+    all.erase(std::remove_if(all.begin(), all.end(), [](const Cell& cell) { return !cell.count; }),
+              all.end());
+    for (const Box& box : boxesOf(all)) {
+      for (auto cell = box.begin; cell != box.end; ++cell)
+        m_index[cell->index] = std::uint8_t(m_colors.size());
+      m_colors.push_back(meanOf(box));
+    }
+  }
+
+  /** BGR. */
+  const std::vector<cv::Vec3b>& colors() const { return m_colors; }
+  /** Which of the colors stands for one that was in the picture. */
+  std::uint8_t indexOf(const cv::Vec3b& color) const { return m_index[cellOf(color)]; }
 
  private:
-  void setMeans(const std::vector<cv::Vec3b>& pixels, std::size_t size) {
-    std::vector<cv::Vec3d> sums(size);
-    std::vector<double> counts(size);
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-      sums[indices[i]] += cv::Vec3d(pixels[i]), ++counts[indices[i]];
-    for (std::size_t i = 0; i < size; ++i) colors.emplace_back(sums[i] / std::max(1., counts[i]));
-  }
+  /** Colors that differ in the last 3 bits of a channel only are one. */
+  static int cellOf(const cv::Vec3b& c) { return c[0] >> 3 << 10 | c[1] >> 3 << 5 | c[2] >> 3; }
+
+  std::vector<cv::Vec3b> m_colors;
+  std::vector<std::uint8_t> m_index;
 };
 
 constexpr int kUnchanged = 0;  ///< index of the transparent color; those of the palette follow
@@ -63,11 +127,11 @@ int hundredths(double seconds) {
 }
 
 std::unique_ptr<ColorMapObject, decltype(&GifFreeMapObject)> colorMapOf(const GifPalette& palette) {
-  const int used = int(palette.colors.size()) + 1;
+  const int used = int(palette.colors().size()) + 1;
   ColorMapObject* map = GifMakeMapObject(1 << std::max(1, GifBitSize(used)), nullptr);
   if (!map) throw std::bad_alloc();
   for (int i = 1; i < used; ++i) {
-    const cv::Vec3b& color = palette.colors[i - 1];
+    const cv::Vec3b& color = palette.colors()[i - 1];
     map->Colors[i] = {color[2], color[1], color[0]};
   }
   return {map, GifFreeMapObject};
@@ -138,13 +202,13 @@ void GifFile::writeFrame(const cv::Mat& part, const cv::Mat& changed, const cv::
   check(EGifPutImageDesc(m_gif.get(), corner.x, corner.y, part.cols, part.rows, false,
                          colorMapOf(palette).get()));
   std::vector<GifPixelType> line(part.cols);
-  auto index = palette.indices.begin();
   for (int row = 0; row < part.rows; ++row) {
     for (int col = 0; col < part.cols; ++col) {
       line[col] = kUnchanged;
       if (!changed.at<std::uint8_t>(row, col)) continue;
-      line[col] = GifPixelType(1 + *index);
-      m_shown.at<cv::Vec3b>(corner.y + row, corner.x + col) = palette.colors[*index++];
+      const int index = palette.indexOf(part.at<cv::Vec3b>(row, col));
+      line[col] = GifPixelType(1 + index);
+      m_shown.at<cv::Vec3b>(corner.y + row, corner.x + col) = palette.colors()[index];
     }
     check(EGifPutLine(m_gif.get(), line.data(), part.cols));
   }

@@ -39,10 +39,9 @@ class Calibrator {
   /** What makes -sum_k q_k ln(stated p(class k | occupied)) least over the voxels, q_k what their
    * labels say, each counting by its points. What the map has counts like 100 labels; labels count
    * from the third of a voxel on, for fewer cannot outvote each other. Power and share are in steps
-   * of 1/256. Classes get factors if those that one half of the places finds make labels of the
-   * other half likelier, away from borders, by more than the standard error: all of them, and those
-   * of voxels whose labels differ. Not if the map was told how frequent classes are
-   * (FilterParameters::classPrior). */
+   * of 1/256. Classes get factors where labels err: where the first two labels of more than one
+   * voxel in 25 differ, and no border of the two is beside. Not if the map was told how frequent
+   * classes are (FilterParameters::classPrior). */
   Calibration fit(const SemanticOcTree& map) const { return fitLater(map)(); }
   /** fit() in two parts: the map is read at once. The rest, which takes most of the time, is done
    * by whoever calls what is returned, in any thread. */
@@ -56,6 +55,8 @@ class Calibrator {
   void keepFewer();
   /** Labels of the voxels that several scans saw. */
   std::map<std::string, double> seenAgain() const;
+  /** Whether labels of a voxel differ more often than borders of right ones do. */
+  bool labelsErr(const SemanticOcTree& map) const;
 
   double m_voxelSize;
   int m_numClasses;
