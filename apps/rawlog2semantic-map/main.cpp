@@ -309,8 +309,9 @@ int run(const Cli& cli) {
   if (!problem.empty()) throw std::runtime_error(problem);
   const auto& tree = map.tree();
   notes() << cli.output.string() << ": voxels of " << tree.getResolution() << " m, "
-          << tree.numClasses() << " classes, " << tree.getNumLeafNodes() << " leaves, "
-          << strict_files::sizeText(tree.memoryUsage()) << " in memory" << std::endl;
+          << tree.numClasses() << (tree.numClasses() == 1 ? " class, " : " classes, ")
+          << tree.getNumLeafNodes() << " leaves, " << strict_files::sizeText(tree.memoryUsage())
+          << " in memory" << std::endl;
   if (live) live->stay();
   return 0;
 }
