@@ -137,7 +137,7 @@ class PlaneSearch::Search {
   Candidate best(int least, const Places& known = {}) const {
     Candidate best{kNone, 0, 0, 0, least};
     std::size_t left = kMostLooks / (4 * m_cells.front().size());  // of expansions
-    for (std::vector<Candidate> open = coarsest(least); !open.empty();) {
+    for (std::vector<Candidate> open = coarsest(least, left + 1); !open.empty();) {
       const Candidate c = open.back();
       open.pop_back();
       if (c.score <= best.score) continue;
@@ -165,9 +165,11 @@ class PlaneSearch::Search {
  private:
   static bool isWorse(const Candidate& a, const Candidate& b) { return a.score < b.score; }
 
-  std::vector<Candidate> coarsest(int least) const {
+  /** \param most as many of the best as a search gets to before it gives up */
+  std::vector<Candidate> coarsest(int least, std::size_t most) const {
     std::vector<Candidate> open;
     std::vector<int> scores;
+    int lowest = least;  // that is remembered
     for (int angle = 0; angle <= 2 * m_angles; ++angle) {
       int level = kLevels;
       std::ptrdiff_t above = 0;
@@ -177,12 +179,20 @@ class PlaneSearch::Search {
       } while (level > kFinest && kRows * above > static_cast<std::ptrdiff_t>(scores.size()));
       const int n = numSquares(level);
       for (int i = 0; above > 0 && i < n * n; ++i)
-        if (scores[static_cast<std::size_t>(i)] > least)
+        if (scores[static_cast<std::size_t>(i)] > lowest)
           open.push_back({level, angle, (i % n << level) - m_radius, (i / n << level) - m_radius,
                           scores[static_cast<std::size_t>(i)]});
+      if (open.size() / 2 < most) continue;
+      keepBest(open, most);
+      lowest = open.front().score - 1;
     }
-    std::stable_sort(open.begin(), open.end(), isWorse);
+    keepBest(open, most);
     return open;
+  }
+  /** Sorts them; of those that are alike it keeps the last. */
+  static void keepBest(std::vector<Candidate>& open, std::size_t most) {
+    std::stable_sort(open.begin(), open.end(), isWorse);
+    open.erase(open.begin(), open.end() - static_cast<std::ptrdiff_t>(std::min(most, open.size())));
   }
   /** Along each axis. */
   int numSquares(int level) const { return (2 * m_radius >> level) + 1; }

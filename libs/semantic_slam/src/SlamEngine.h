@@ -127,6 +127,9 @@ class SlamEngine {
   bool joinPiece();
   /** Searches all that is not in the largest part. */
   bool joinParts();
+  /** Whether its frame is that of the map: looks at a reference connect it, or, where there are
+   * none, it has the first keyframe. */
+  bool holdsMap(const Part& part) const;
   /** \param finds of keyframes of the part that agree with each other; one is enough if it is where
    * odometry has it. \return whether it is in its place now */
   bool join(const Part& part, const std::vector<PoseEdge>& finds);

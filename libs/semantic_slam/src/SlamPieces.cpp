@@ -109,13 +109,14 @@ bool SlamEngine::joinPiece() {
   if (way < m_nextJoin) return false;
   m_nextJoin = kNextLook * way;
   const auto all = parts();
-  if (all.size() == 1) {  // looks at a reference connect it
+  const auto own = std::find_if(all.begin(), all.end(),
+                                [newest](const Part& part) { return part.back() == newest; });
+  if (own->front() < *m_piece) {  // looks at a reference connect it
     m_piece.reset();
     return false;
   }
-  const bool isLargest = all[0].back() == newest;
   const std::size_t length = std::min(newest - *m_piece, kSearched);
-  const Places places = placesOf(all[isLargest]);
+  const Places places = placesOf(all[own == all.begin()]);
   const auto found = findStretch(places, {newest - length, newest});
   if (!found) return false;
   std::vector<PoseEdge> finds{*found};
@@ -140,6 +141,13 @@ bool SlamEngine::joinParts() {
   return moved;
 }
 
+bool SlamEngine::holdsMap(const Part& part) const {
+  const auto isLook = [](const PoseEdge& edge) { return edge.a == PoseEdge::kMap; };
+  const auto look = std::find_if(m_edges.begin(), m_edges.end(), isLook);
+  const std::size_t held = look == m_edges.end() ? 0 : look->b;
+  return std::binary_search(part.begin(), part.end(), held);
+}
+
 bool SlamEngine::join(const Part& part, const std::vector<PoseEdge>& finds) {
   if (finds.empty()) return false;
   const PoseEdge& found = finds.front();
@@ -151,10 +159,10 @@ bool SlamEngine::join(const Part& part, const std::vector<PoseEdge>& finds) {
     if (finds.size() < 2) return false;
     ++m_report.joined;
     m_report.carried = std::max(m_report.carried, carried);
-    const bool staysFirst = part.front() == 0;  // then all others come to it
-    const Pose T = staysFirst ? T_moved.inverse() : T_moved;
+    const bool stays = holdsMap(part);  // then all others come to it
+    const Pose T = stays ? T_moved.inverse() : T_moved;
     for (std::size_t k = 0; k < m_poses.size(); ++k)
-      if (std::binary_search(part.begin(), part.end(), k) != staysFirst)
+      if (std::binary_search(part.begin(), part.end(), k) != stays)
         m_poses[k] = levelled(rigid(T * m_poses[k]), m_keyframes[k].seen.T_odometry_robot);
   }
   m_edges.insert(m_edges.end(), finds.begin(), finds.end());
