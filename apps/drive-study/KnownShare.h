@@ -19,7 +19,7 @@ class KnownShare {
   KnownShare(semantic_octree::SemanticOcTree& map, const synthetic_world::World& world,
              const ExploreTask& task);
   double share();
-  /** Of what is known, or of things' sides, after the last call of share(). */
+  /** How many columns of ground or things are right. Ground is as in the last share(). */
   long columns() const;
 
  private:
@@ -48,7 +48,7 @@ class KnownShare {
   const double m_far;
   semantic_octree::MapFollower m_follower;
   std::set<Column> m_known;  ///< columns of ground
-  int m_all = 0;             ///< the same, of the world
+  int m_all = 0;             ///< columns of ground in the world
   std::vector<Thing> m_things;
 };
 

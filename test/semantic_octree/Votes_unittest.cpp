@@ -3,6 +3,7 @@
 #include <semantic_octree/ClassFilter.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "ExactFilter.h"
@@ -101,6 +102,25 @@ TEST(Votes, ofTheOnlyClassAreItsHit) {
   ClassBelief<float> labeled = filter.uniform(0);
   filter.hit(labeled, 1);
   EXPECT_TRUE(after(filter, {{1, 5}}) == labeled);
+}
+
+TEST(Votes, doNotDependOnTheOrderOfPoints) {
+  std::mt19937 random(4);
+  for (int round = 0; round < 5; ++round) {
+    const PosedCloud scan = randomScan(random);
+    std::vector<std::size_t> order(scan.cloud.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), random);
+    LabeledCloud shuffled;
+    for (const std::size_t i : order) {
+      shuffled.points.push_back(scan.cloud.points[i]);
+      shuffled.classes.push_back(scan.cloud.classes[i]);
+    }
+    SemanticOcTree a(0.5, numberedClasses(5)), b = a;
+    a.insert(scan.cloud, scan.T_map_sensor);
+    b.insert(shuffled, scan.T_map_sensor);
+    EXPECT_TRUE(a == b);
+  }
 }
 
 TEST(Votes, ofAScanAreAllLabelsThatEndInAVoxel) {

@@ -164,7 +164,7 @@ const Surface* RelevantViews::groundOf(Column c, const GroundPoint& here) const 
   return surface && m_ground.connected(here, {c, *surface}) ? surface : nullptr;
 }
 
-/** And around it: what stands there may rise from ground of the tile. */
+/** Learns a tile, and the columns around it: what stands there may rise from the tile's ground. */
 void RelevantViews::learnTile(Column first, const GroundPoint& here) {
   for (int x = first.x - 1; x <= first.x + kTile; ++x)
     for (int y = first.y - 1; y <= first.y + kTile; ++y) {

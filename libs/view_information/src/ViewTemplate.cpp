@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,32 +33,47 @@ void requireWithin(const char* what, double value, double least, double most) {
                               std::to_string(most));
 }
 
-/** Straight, one voxel in each shell. \param far voxels; up, around: radians */
-Beam beamTo(double far, double up, double around) {
-  const std::array<double, 3> d{std::cos(up) * std::cos(around), std::cos(up) * std::sin(around),
-                                std::sin(up)};
-  const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-  Beam beam;
-  for (int shell = 1; shell <= far * largest; ++shell) {
-    beam.emplace_back();
-    for (std::size_t a = 0; a < 3; ++a)
-      beam.back()[a] = static_cast<int>(std::lround(shell * d[a] / largest));
-  }
-  return beam;
-}
+/** Straight, one voxel in each shell. */
+struct Ray {
+  std::array<double, 3> direction;
+  double largest;  ///< part of it along an axis
+  int shells;
 
-/** Those that share their first voxels are beside each other. \param columns all around */
-std::vector<Beam> beamsOf(const ViewShape& shape, double far, int columns) {
+  /** \param far voxels; up, around: radians */
+  Ray(double far, double up, double around)
+      : direction{std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up)},
+        largest(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])})),
+        shells(static_cast<int>(far * largest)) {}
+  Offset at(int shell) const {
+    Offset voxel;
+    for (std::size_t a = 0; a < 3; ++a)
+      voxel[a] = static_cast<int>(std::lround(shell * direction[a] / largest));
+    return voxel;
+  }
+};
+
+/** \param columns all around */
+std::vector<Ray> raysOf(const ViewShape& shape, double far, int columns) {
   const double height = shape.highest - shape.lowest;
   const int rings =
       shape.rings > 0 ? shape.rings : 1 + static_cast<int>(std::ceil(height / kApart));
-  std::vector<Beam> beams;
+  std::vector<Ray> rays;
   for (int ring = 0; ring < rings; ++ring)
     for (int column = 0; column < columns; ++column) {
       const double share = rings > 1 ? static_cast<double>(ring) / (rings - 1) : 0;
-      beams.push_back(beamTo(far, (shape.lowest + share * height) * M_PI / 180,
-                             2 * M_PI * (column + 0.5) / columns));
+      rays.emplace_back(far, (shape.lowest + share * height) * M_PI / 180,
+                        2 * M_PI * (column + 0.5) / columns);
     }
+  return rays;
+}
+
+/** Those that share their first voxels are beside each other. */
+std::vector<Beam> beamsOf(const std::vector<Ray>& rays) {
+  std::vector<Beam> beams;
+  for (const Ray& ray : rays) {
+    beams.emplace_back();
+    for (int shell = 1; shell <= ray.shells; ++shell) beams.back().push_back(ray.at(shell));
+  }
   std::sort(beams.begin(), beams.end());
   return beams;
 }
@@ -85,12 +99,18 @@ ViewTemplate::Voxel voxelOf(const Offset& v) {
           static_cast<std::uint16_t>(sectorOf(v)), 0};
 }
 
-/** By shell, how many different voxels the beams have. */
-std::vector<int> countsOf(const std::vector<Beam>& beams, int reach) {
-  std::set<Offset> different;
-  for (const Beam& beam : beams) different.insert(beam.begin(), beam.end());
+/** By shell, how many different voxels the rays have: a LiDAR has many, and few fit in memory. */
+std::vector<int> countsOf(const std::vector<Ray>& rays, int reach) {
   std::vector<int> counts(static_cast<std::size_t>(reach) + 1, 0);
-  for (const Offset& v : different) ++counts[static_cast<std::size_t>(shellOf(v))];
+  std::vector<Offset> voxels;
+  for (int shell = 1; shell <= reach; ++shell) {
+    voxels.clear();
+    for (const Ray& ray : rays)
+      if (shell <= ray.shells) voxels.push_back(ray.at(shell));
+    std::sort(voxels.begin(), voxels.end());
+    const auto end = std::unique(voxels.begin(), voxels.end());
+    counts[static_cast<std::size_t>(shell)] = static_cast<int>(end - voxels.begin());
+  }
   return counts;
 }
 
@@ -112,7 +132,7 @@ ViewTemplate::ViewTemplate(const ViewShape& shape, double voxelSize) : m_shape(s
   };
   Beam last;
   const int columns = shape.rings > 0 ? std::min(shape.columns, kColumns) : kColumns;
-  for (const Beam& beam : beamsOf(shape, far, columns)) {
+  for (const Beam& beam : beamsOf(raysOf(shape, far, columns))) {
     const auto apart = std::mismatch(beam.begin(), beam.end(), last.begin(), last.end()).first;
     close(1 + static_cast<std::size_t>(apart - beam.begin()));
     for (auto v = apart; v != beam.end(); ++v) {
@@ -125,7 +145,7 @@ ViewTemplate::ViewTemplate(const ViewShape& shape, double voxelSize) : m_shape(s
   close(0);
   // A beam stands for others, and where some that came apart share a voxel again, it counts once.
   const std::vector<int> all = shape.rings > 0
-                                   ? countsOf(beamsOf(shape, far, shape.columns), m_reach)
+                                   ? countsOf(raysOf(shape, far, shape.columns), m_reach)
                                    : countsOf(shape, m_reach, far);
   std::vector<int> kept(all.size(), 0);
   for (const Voxel& v : m_voxels) ++kept[v.shell];

@@ -38,7 +38,8 @@ class ViewTemplate {
     std::int32_t next;          ///< behind all that are seen through it, which follow it
   };
   const std::vector<Voxel>& voxels() const { return m_voxels; }
-  /** For how many voxels of its shell it stands: far ones are not all in the template. */
+  /** For how many voxels of its shell it stands: far ones are not all in the template, and some
+   * are in it more than once. */
   float weight(const Voxel& voxel) const { return m_weights[voxel.shell]; }
   /** A voxel is seen by who looks along a sector's middle. */
   bool sees(const Voxel& voxel, int sector) const;
@@ -77,8 +78,9 @@ class GainField {
   SectorGains sweep(const ViewTemplate& view, UnknownPrior& prior,
                     const octomap::OcTreeKey& from) const;
   /** What a view from a voxel along a sector's middle is expected to add to the objective of a
-   * compressed tree of the question's weights: growthOfTree() of the template's voxels, nats summed
-   * over these. The prior says which are reached, the map what is believed of them. */
+   * compressed tree of the question's weights: growthOfTree() of the template's voxels, each for
+   * those that it stands for, nats summed over these. The prior says which are reached, the map
+   * what is believed of them. */
   Bounds growth(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from,
                 int sector) const;
 
