@@ -15,8 +15,9 @@ constexpr int kBest = 255;
 /** A point is blurred by a Gaussian of so many cells, and drawn to twice that. */
 constexpr double kBlur = 1.2;
 constexpr int kReach = 3;
-/** Points that one search looks up at most, beside those of whole levels: several times what a
- * quarter of a kilometer of trees and fences takes where nothing fits. */
+/** Points that one search looks up at most: several times what a quarter of a kilometer of trees
+ * and fences takes where nothing fits. Whole levels, which are looked up in rows, may take as long
+ * again. */
 constexpr std::size_t kMostLooks = 3'000'000'000;
 /** A level of which more than one square in so many may hold a fit is left for the next finer one:
  * in rows, squares take so much less time each than alone. Below the finest level that is looked at
@@ -169,14 +170,15 @@ class PlaneSearch::Search {
   std::vector<Candidate> coarsest(int least, std::size_t most) const {
     std::vector<Candidate> open;
     std::vector<int> scores;
-    int lowest = least;  // that is remembered
+    int lowest = least, finest = kFinest;  // lowest that is remembered
+    while (finest < kLevels - 1 && looksAtAll(finest) / kRows > kMostLooks) ++finest;
     for (int angle = 0; angle <= 2 * m_angles; ++angle) {
       int level = kLevels;
       std::ptrdiff_t above = 0;
       do {
         scoreAll(--level, angle, scores);
         above = std::count_if(scores.begin(), scores.end(), [=](int s) { return s > least; });
-      } while (level > kFinest && kRows * above > static_cast<std::ptrdiff_t>(scores.size()));
+      } while (level > finest && kRows * above > static_cast<std::ptrdiff_t>(scores.size()));
       const int n = numSquares(level);
       for (int i = 0; above > 0 && i < n * n; ++i)
         if (scores[static_cast<std::size_t>(i)] > lowest)
@@ -193,6 +195,10 @@ class PlaneSearch::Search {
   static void keepBest(std::vector<Candidate>& open, std::size_t most) {
     std::stable_sort(open.begin(), open.end(), isWorse);
     open.erase(open.begin(), open.end() - static_cast<std::ptrdiff_t>(std::min(most, open.size())));
+  }
+  std::size_t looksAtAll(int level) const {
+    const auto n = static_cast<std::size_t>(numSquares(level));
+    return n * n * m_cells.size() * m_cells.front().size();
   }
   /** Along each axis. */
   int numSquares(int level) const { return (2 * m_radius >> level) + 1; }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "SlamEngine.h"
 
@@ -130,13 +131,14 @@ bool SlamEngine::joinPiece() {
 }
 
 bool SlamEngine::joinParts() {
-  bool moved = false;
-  auto all = parts();
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (!join(all[i], findPart(all[0], all[i]))) continue;
-    moved = true;
-    all = parts();  // what was not found before may be now
-    i = 0;
+  bool moved = false, isMore = true;
+  while (std::exchange(isMore, false)) {  // what was not found before may be now
+    auto all = parts();
+    for (std::size_t i = 1; i < all.size();)
+      if (join(all[i], findPart(all[0], all[i])))
+        moved = isMore = true, all = parts();  // the next one has its place
+      else
+        ++i;
   }
   return moved;
 }

@@ -91,6 +91,7 @@ class RelaxedSearch {
     const Cost length = columns * (step % 2 ? kDiagonalStep : kStraightStep);
     if (before + length * m_weights.front() >= known.cost) return;
     colored_graph::Rank rank = m_field.rankAt(to, step);
+    for (int i = 1; i < columns; ++i) rank = std::max(rank, rankAfter(step, i, from));
     if (rank == colored_graph::kForbidden && m_overForbidden) rank = m_checker.order().ranks() - 1;
     if (rank == colored_graph::kForbidden) return;
     const Cost cost = before + length * m_weights[static_cast<std::size_t>(rank)];
@@ -98,6 +99,13 @@ class RelaxedSearch {
       reach(to, {cost, from.cell});
   }
 
+  /** On the way of a longer step: strips of a class may be narrower. */
+  colored_graph::Rank rankAfter(std::size_t step, int columns, const Place& from) const {
+    const Place at = m_field.placeNear(
+        {from.column.x + columns * kSteps[step].x, from.column.y + columns * kSteps[step].y},
+        from.surface->z, columns * m_checker.ground().step());
+    return at.surface ? m_field.rankAt(at, step) : 0;
+  }
   bool fits(std::size_t step, const Place& at) const {
     for (std::size_t i = 0; i < m_discs[step].size(); ++i) {
       const auto& disc = m_checker.discs()[i];
