@@ -111,13 +111,15 @@ fs::path Unfinished::keep() {
 
 std::unique_lock<std::mutex> Unfinished::hold() { return std::unique_lock(registry().mutex); }
 
-/** False if the name is taken. */
+/** False if the name is taken, or another process took the folder for one of the dead. */
 bool Unfinished::make(Kind kind) {
   constexpr int kSafely = O_NOFOLLOW | O_CLOEXEC;
   if (kind == Kind::File)
     m_descriptor = open(m_path.c_str(), O_RDWR | O_CREAT | O_EXCL | kSafely, 0666);
-  else if (mkdir(m_path.c_str(), 0777) == 0)
+  else if (mkdir(m_path.c_str(), 0777) == 0) {
     m_descriptor = open(m_path.c_str(), O_RDONLY | O_DIRECTORY | kSafely);
+    if (m_descriptor < 0 && errno == ENOENT) return false;
+  }
   if (m_descriptor >= 0) return true;
   if (errno == EEXIST) return false;
   throw fs::filesystem_error("cannot be made", m_path, {errno, std::generic_category()});
