@@ -246,6 +246,27 @@ TEST_F(RelaxedSearch, noWayBetweenAnyPlacesCostsLess) {
   }
 }
 
+/** A forbidden class leaves free what single columns thread, and longer steps may not. */
+TEST_F(RelaxedSearch, findsAWayWhereThereIsOneForSingleColumns) {
+  constexpr std::int64_t kNoWay = std::int64_t{1} << 40;
+  order = {5, {{1}, {2}, {0}}};
+  options.vehicle.wheelTrack = 0;
+  options.vehicle.footprint = Footprint::rectangle(-0.25, 0.55, 0.6);
+  std::mt19937 random(5);
+  int ways = 0;
+  for (int round = 0; round < 40; ++round) {
+    world = PaintedWorld();
+    const Patches patches(world, 2 + round % 2, random);
+    const int from = patches.anywhere(random, 2), to = patches.anywhere(random, 2);
+    start = patches.poseAt(from);
+    goal = patches.poseAt(to);
+    if (from == to || patches.leastCost(from, to, 1, {1, 1, kNoWay}) >= kNoWay) continue;
+    EXPECT_FALSE(guide().empty()) << round;
+    ++ways;
+  }
+  EXPECT_GT(ways, 10);
+}
+
 TEST_F(RelaxedSearch, keepsTheFootprintOffWalls) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);

@@ -28,10 +28,11 @@ int strideOf(const CollisionChecker& checker) {
  * columns along its sides, however narrow it is. */
 class RelaxedSearch {
  public:
-  RelaxedSearch(const CollisionChecker& checker, bool overForbidden)
+  /** \param stride columns of a step where there is room */
+  RelaxedSearch(const CollisionChecker& checker, bool overForbidden, int stride)
       : m_checker(checker),
         m_overForbidden(overForbidden),
-        m_stride(strideOf(checker)),
+        m_stride(stride),
         m_field(checker),
         m_weights(weightsOfRanks(checker.order())) {
     for (std::size_t step = 0; step < kSteps.size(); ++step)
@@ -151,7 +152,7 @@ class RelaxedSearch {
 
   const CollisionChecker& m_checker;
   const bool m_overForbidden;
-  const int m_stride;  ///< columns of a step where there is room
+  const int m_stride;
   RelaxedField m_field;
   std::array<std::vector<Column>, kSteps.size()> m_discs;  ///< by step
   const std::vector<Cost> m_weights;                       ///< of a length, by rank
@@ -201,7 +202,10 @@ RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& sta
                           const GroundPose& goal, bool overForbidden) {
   RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  RelaxedSearch(checker, overForbidden).run(start, goal, guide);
+  const int stride = strideOf(checker);
+  RelaxedSearch(checker, overForbidden, stride).run(start, goal, guide);
+  if (path.empty() && stride > 1)  // what classes leave free may be narrower than a step
+    RelaxedSearch(checker, overForbidden, 1).run(start, goal, guide);
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {
