@@ -71,20 +71,6 @@ ImageList readImageList(const fs::path& list) {
   return images;
 }
 
-/** The image nearest to a time, within kTimeTolerance. */
-std::optional<fs::path> nearest(const ImageList& images, double time) {
-  std::optional<fs::path> best;
-  double least = kTimeTolerance;
-  const auto consider = [&](const auto& image) {
-    const double apart = std::abs(image.first - time);
-    if (apart <= least) least = apart, best = image.second;
-  };
-  const auto after = images.lower_bound(time);
-  if (after != images.end()) consider(*after);
-  if (after != images.begin()) consider(*std::prev(after));
-  return best;
-}
-
 /** Reads camera.ini: MRPT's section [CAMERA_PARAMS] and in it depth_factor.
  * \throw std::runtime_error naming the file and what is missing. */
 DepthCamera readCamera(const fs::path& file) try {
@@ -153,14 +139,15 @@ Summary convertTumSequence(const fs::path& folder, const Conversion& conversion)
     if (!output.wants(frame++, depth.size())) continue;
     const auto time = mrpt::Clock::fromDouble(seconds);
     const auto T_world_optical = trajectory.at(time);
-    const auto labelFile = nearest(labels, seconds);
+    const auto labelFile = labeled_cloud::nearestIn(labels, seconds, kTimeTolerance);
     if (!T_world_optical || (conversion.labels && !labelFile)) {
       output.skip();
       continue;
     }
     CObservation3DRangeScan scan = readDepth(file, camera);
     scan.timestamp = time;
-    if (const auto image = nearest(color, seconds)) addColor(*image, scan);
+    if (const auto image = labeled_cloud::nearestIn(color, seconds, kTimeTolerance))
+      addColor(*image, scan);
     output.writePose(time, *T_world_optical + opticalFromForward());
     std::optional<LabelImage> pixels;
     if (labelFile) pixels = labeled_cloud::readLabelImage(*labelFile, table);

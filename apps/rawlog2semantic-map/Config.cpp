@@ -93,16 +93,6 @@ Trajectory loadTrajectory(const fs::path& file, const std::vector<fs::path>& raw
   return trajectory;
 }
 
-Trajectory ownTrajectory(const std::vector<fs::path>& rawlogs, bool isNeeded) {
-  Trajectory found = labeled_cloud::findTrajectory(rawlogs);
-  if (found.empty() && isNeeded)
-    throw std::runtime_error(rawlogs.front().string() +
-                             ": no robot poses (CObservationRobotPose, movements, or "
-                             "CObservationOdometry); give --trajectory or --slam, or --static-pose "
-                             "if the robot stood still");
-  return found;
-}
-
 using labeled_cloud::ScanStreamOptions;
 using mrpt::config::CConfigFile;
 using strict_files::OptionList;

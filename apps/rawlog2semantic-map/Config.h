@@ -25,10 +25,6 @@ labeled_cloud::Trajectory restAtOrigin();
 labeled_cloud::Trajectory loadTrajectory(const std::filesystem::path& file,
                                          const std::vector<std::filesystem::path>& rawlogs);
 
-/** The rawlogs' own poses; empty: there are none. \throw std::runtime_error as RawlogReader */
-labeled_cloud::Trajectory ownTrajectory(const std::vector<std::filesystem::path>& rawlogs,
-                                        bool isNeeded);
-
 /** What the .ini file says: one member a section. */
 struct Config {
   semantic_map::TCreationOptions map;             // [map]

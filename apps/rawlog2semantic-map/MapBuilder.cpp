@@ -132,19 +132,12 @@ ordered_json mapJson(const SemanticOcTree& tree, bool countVoxels) {
 ordered_json abstractionJson(const Summary& s) {
   const AbstractionSummary& a = s.abstraction;
   ordered_json scans = ordered_json::array();
-  for (std::size_t i = 0; i < a.leaves.size(); ++i) {
-    ordered_json scan = {{"leaves", a.leaves[i]},
-                         {"compressedLeaves", a.compressedLeaves[i]},
-                         {"insertionMilliseconds", s.insertionTimes[i]},
-                         {"changeMilliseconds", a.changeTimes[i]}};
-    if (!a.insertionTimesWithout.empty())
-      scan["insertionMillisecondsWithout"] = a.insertionTimesWithout[i];
-    scans.push_back(scan);
-  }
-  ordered_json json = {{"change", timesJson(a.changeTimes)}, {"scans", scans}};
-  if (!a.insertionTimesWithout.empty())
-    json["insertionWithout"] = timesJson(a.insertionTimesWithout);
-  return json;
+  for (std::size_t i = 0; i < a.leaves.size(); ++i)
+    scans.push_back({{"leaves", a.leaves[i]},
+                     {"compressedLeaves", a.compressedLeaves[i]},
+                     {"insertionMilliseconds", s.insertionTimes[i]},
+                     {"changeMilliseconds", a.changeTimes[i]}});
+  return {{"change", timesJson(a.changeTimes)}, {"scans", scans}};
 }
 
 }  // namespace
@@ -214,11 +207,6 @@ MapBuilder::MapBuilder(semantic_map::CSemanticOctoMap& map,
       m_hadContent(!map.isEmpty()),
       m_onScan(std::move(onScan)) {}
 
-void MapBuilder::timeWithoutAbstraction() {
-  m_plainMap = std::make_unique<semantic_map::CSemanticOctoMap>(m_map);
-  m_plainMap->setAbstraction({});
-}
-
 void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const fs::path& folder,
                               const fs::path& reference) {
   semantic_slam::MapperOptions mapping;
@@ -266,6 +254,8 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
   if (m_mapper) noteSlam();
   if (m_mapper && m_hadContent) checkFoundInMap();
   noteLabels();
+  for (const auto& doubt : m_doubts.warnings(m_map.tree(), m_map.insertionOptions.scan.maxRange))
+    notes() << "Warning: " << doubt << std::endl;
 }
 
 void MapBuilder::checkFoundInMap() const {
@@ -321,7 +311,7 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);
-  if (hasAbstraction(m_map.tree())) noteAbstraction(scan, T_map_robot);
+  if (hasAbstraction(m_map.tree())) noteAbstraction();
   if (m_onScan) m_onScan(scan, T_map_robot);
 } catch (const std::exception& e) {
   throw std::runtime_error(observation.name + ": " + strict_files::messageOf(e));
@@ -332,6 +322,7 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   if (!m_mapper) {
     const Eigen::Isometry3d T = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
     m_calibrator.add(scan.cloud, T, m_map.insertionOptions.scan);
+    m_doubts.add(scan, T);
     return m_map.insertScan(scan, T_map_robot);
   }
   m_clock.setMaxGap(m_map.insertionOptions.maxGap);
@@ -343,6 +334,7 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   const auto inserted = m_mapper->insert(seen, T_odometry_robot, m_seconds);
   if (!m_hasOdometry) T_map_robot = labeled_cloud::toMrpt(inserted.place.T_map_robot);
   m_clock.note(scan.timestamp);
+  m_doubts.add(scan, inserted.place.T_map_robot * seen.T_robot_sensor);
   const semantic_slam::Slam::Added& added = *inserted.place.added;
   m_placed.push_back(
       {mrpt::Clock::toDouble(scan.timestamp), added.keyframe, added.T_keyframe_robot});
@@ -373,13 +365,11 @@ std::string MapBuilder::trajectory() const {
   return out.str();
 }
 
-void MapBuilder::noteAbstraction(const LabeledScan& scan, const CPose3D& T_map_robot) {
+void MapBuilder::noteAbstraction() {
   AbstractionSummary& a = m_summary.abstraction;
   a.changeTimes.push_back(timeOf([&] { m_follower.leaves(); }));
   a.compressedLeaves.push_back(m_follower.skipLeaves());
   a.leaves.push_back(m_map.tree().getNumLeafNodes());
-  if (m_plainMap)
-    a.insertionTimesWithout.push_back(timeOf([&] { m_plainMap->insertScan(scan, T_map_robot); }));
 }
 
 }  // namespace rawlog2semantic_map

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "Doubts.h"
 #include "Terminal.h"
 
 namespace rawlog2semantic_map {
@@ -24,8 +25,7 @@ namespace rawlog2semantic_map {
 /** The abstraction along the way; one entry a scan. */
 struct AbstractionSummary {
   std::vector<std::size_t> leaves, compressedLeaves;
-  /** Telling what changed in the optimal tree; inserting without upkeep, if that was tried: ms. */
-  std::vector<double> changeTimes, insertionTimesWithout;
+  std::vector<double> changeTimes;  ///< telling what changed in the optimal tree, ms
 };
 
 /** What became of the observations on their way into the map. */
@@ -87,9 +87,6 @@ class MapBuilder {
   MapBuilder(semantic_map::CSemanticOctoMap& map, const labeled_cloud::Trajectory& trajectory,
              OnScan onScan = {});
 
-  /** Also inserts each scan into a map that keeps no abstraction, for comparison. */
-  void timeWithoutAbstraction();
-
   /** Scans go where SLAM finds them. Those of a map that has content stay there.
    * \param folder where they are kept meanwhile
    * \param reference map (.semantic, or a folder of tiles) into whose frame they go; may be empty
@@ -119,8 +116,7 @@ class MapBuilder {
   /** Tells if labels contradict each other more than their parameters say. */
   void noteLabels() const;
   void insertScan(const labeled_cloud::StreamedObservation& observation);
-  void noteAbstraction(const labeled_cloud::LabeledScan& scan,
-                       const mrpt::poses::CPose3D& T_map_robot);
+  void noteAbstraction();
 
   /** \param T_map_robot of odometry; without any, where the scan was found */
   semantic_octree::InsertionReport insertIntoMap(const labeled_cloud::LabeledScan& scan,
@@ -135,7 +131,8 @@ class MapBuilder {
   semantic_octree::Calibrator m_calibrator;       ///< the mapper has its own
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
   bool m_hasOdometry = true;
-  const bool m_hadContent;                 ///< the map, before the first scan
+  const bool m_hadContent;  ///< the map, before the first scan
+  Doubts m_doubts;
   semantic_map::ObservationClock m_clock;  ///< of its scans
   double m_seconds = 0;                    ///< that passed, by the clock
   struct PlacedScan {
@@ -145,7 +142,6 @@ class MapBuilder {
   };
   std::vector<PlacedScan> m_placed;
   OnScan m_onScan;
-  std::unique_ptr<semantic_map::CSemanticOctoMap> m_plainMap;
   Summary m_summary;
 };
 

@@ -36,7 +36,7 @@ struct Cli {
   LabelSources labels;
   std::optional<double> resolution, maxRange;
   std::size_t previewEvery = 10;
-  bool compareUpkeep = false, staticPose = false, slam = false, live = false, pause = false;
+  bool staticPose = false, slam = false, live = false, pause = false;
   std::vector<fs::path> rawlogs;
   Outputs outputs;
 
@@ -69,13 +69,9 @@ struct Cli {
                    "Returns beyond it only carve free space, m; 0: no limit")
         ->check(isNumber(strict_files::atLeast(0)));
     app.add_flag_callback("-v,--verbose", beVerbose, "Say what became of each observation");
-    auto* upkeep =
-        app.add_flag("--compare-upkeep", compareUpkeep,
-                     "Also time each insertion without keeping the compressed tree up to date");
     auto* corrected = app.add_flag("--slam", slam,
                                    "Correct the poses: register scans to each other, close loops; "
                                    "for LiDARs, RGB-D cameras, laser scanners")
-                          ->excludes(upkeep)
                           ->excludes(rest);
     app.add_option(
            "--reference", reference,
@@ -84,7 +80,7 @@ struct Cli {
     auto* window = app.add_flag(
         "--live", live,
         "Show the map in a window while it grows, and then until the window is closed");
-    addTilesTo(app)->excludes(upkeep)->excludes(window);
+    addTilesTo(app)->excludes(window);
     app.add_flag("--pause", pause, "Begin paused, before the first scan")->needs(window);
     app.add_option("INPUT.rawlog", rawlogs,
                    "Rawlogs, parts of one log in order; of a bag of ROS 2: dataset2rawlog rosbag2")
@@ -158,7 +154,9 @@ labeled_cloud::Trajectory trajectoryOf(const Cli& cli) {
   if (cli.staticPose) return restAtOrigin();
   if (!cli.trajectory.empty()) return loadTrajectory(cli.trajectory, cli.rawlogs);
   notes() << "Reading the robot's poses" << std::endl;
-  return ownTrajectory(cli.rawlogs, !cli.slam);
+  if (cli.slam) return labeled_cloud::findTrajectory(cli.rawlogs);
+  return labeled_cloud::readTrajectory(
+      cli.rawlogs, "give --trajectory or --slam, or --static-pose if the robot stood still");
 }
 
 /** Where scans go beside the map. */
@@ -239,7 +237,6 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
     if (live) live->show(scan, T, builder.summary());
   });
   if (cli.trajectory.empty()) builder.countPoses();
-  if (cli.compareUpkeep) builder.timeWithoutAbstraction();
   const fs::path trajectoryFile = output.staged("trajectory.tum");
   if (cli.slam) builder.correctPoses(config.slam, trajectoryFile.parent_path(), cli.reference);
   if (!hasPoses) builder.withoutOdometry();

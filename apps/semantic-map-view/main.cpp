@@ -16,6 +16,7 @@
 #include "PlanPanel.h"
 #include "map_window/ShowPanel.h"
 #include "map_window/Viewer.h"
+#include "poses/Poses.h"
 
 namespace semantic_map_view {
 namespace {
@@ -48,28 +49,13 @@ void readSize(const std::string& text, Cli& cli) {
   cli.width = width, cli.height = height;
 }
 
-void readCamera(const std::string& text, Cli& cli) {
-  try {
-    cli.view.camera = map_view::OrbitCamera::ofText(text);
-  } catch (const std::invalid_argument& e) {
-    throw CLI::ValidationError(std::string("--camera ") + e.what());
-  }
-}
-
-void readClip(const std::string& text, Cli& cli) {
-  std::istringstream in(text);
-  std::array<double, 6> numbers{};
-  char comma = ',';
-  for (std::size_t i = 0; i < numbers.size() && comma == ','; ++i) {
-    if (i > 0) in >> comma;
-    in >> numbers[i];
-  }
-  const Eigen::Vector3d low(numbers[0], numbers[1], numbers[2]),
-      high(numbers[3], numbers[4], numbers[5]);
-  if (!in || comma != ',' || !(in >> std::ws).eof() || !(low.array() < high.array()).all())
-    throw CLI::ValidationError("--clip is '" + text +
-                               "', expected X,Y,Z,X2,Y2,Z2, the lowest corner first");
-  cli.view.style.clip = {low, high};
+Eigen::AlignedBox3d parseClip(const std::string& text) {
+  const std::string expected = "X,Y,Z,X2,Y2,Z2, the lowest corner first";
+  const auto numbers = poses::parseNumbers(text, 6, 6, expected);
+  const Eigen::Vector3d low(numbers.data()), high(numbers.data() + 3);
+  if (!(low.array() < high.array()).all())
+    throw std::invalid_argument("expected " + expected + ", found '" + text + "'");
+  return {low, high};
 }
 
 Cli::Cli(CLI::App& app) : outputs(app) {
@@ -87,19 +73,19 @@ Cli::Cli(CLI::App& app) : outputs(app) {
          "--size", [this](const std::string& text) { readSize(text, *this); },
          "Size of the window, pixels")
       ->type_name("WIDTHxHEIGHT");
-  auto* from = app.add_option_function<std::string>(
-      "--camera", [this](const std::string& text) { readCamera(text, *this); },
+  auto* from = poses::addParsed(
+      app, "--camera", "X,Y,Z,DISTANCE,AZIMUTH,ELEVATION",
+      [this](const std::string& text) { view.camera = map_view::OrbitCamera::ofText(text); },
       "Point looked at, distance (m), azimuth, elevation (degrees), as the window says them");
-  from->type_name("X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
   app.add_flag("--top", view.top, "From above, north up")->excludes(from);
   std::map<std::string, map_view::ViewColoring> colorings;
   for (const auto& [name, value] : choicesOf(map_view::ViewColoring())) colorings[name] = value;
   addChoice(app.add_option("--color", view.style.coloring, "What the colors of cells show"),
             colorings);
-  auto* clip = app.add_option_function<std::string>(
-      "--clip", [this](const std::string& text) { readClip(text, *this); },
+  auto* clip = poses::addParsed(
+      app, "--clip", "X,Y,Z,X2,Y2,Z2",
+      [this](const std::string& text) { view.style.clip = parseClip(text); },
       "Show only cells with their centers in this box, m");
-  clip->type_name("X,Y,Z,X2,Y2,Z2");
   app.add_option("--max-height", view.style.clip.max().z(),
                  "Show no cells with their centers above this height, m")
       ->check(isNumber({}))

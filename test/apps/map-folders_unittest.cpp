@@ -224,14 +224,6 @@ TEST_F(MapFolders, withABadTileAreUsableWhereItIsNot) {
   EXPECT_EQ(runProgram("semantic-map-info", {path("bad"), "--at", inIt}).status, 1);
 }
 
-TEST_F(MapFolders, haveNoSecondMapToCompareWith) {
-  const ProgramRun run =
-      runProgram("rawlog2semantic-map", joined(mapping("never", true), {"--compare-upkeep"}));
-  EXPECT_EQ(run.status, 64);
-  EXPECT_TRUE(contains(run.errors, "--compare-upkeep"));
-  EXPECT_FALSE(std::filesystem::exists(path("never")));
-}
-
 TEST_F(MapFolders, withAnIndexThatIsNotOfTheirFilesAreRefusedByEveryProgram) {
   const std::filesystem::path bad = path("wrong");
   std::filesystem::copy(path("tiles"), bad);

@@ -324,3 +324,38 @@ TEST(SampleMap, theVillageIsMappedWithItsClasses) {
   EXPECT_GT(quality.coverage(), 0.95);
   EXPECT_GT(quality.accuracy(), 0.93);  // 2 % of the labels are wrong
 }
+
+/** Drives 20 m over flat ground of which a LiDAR, 1 m above it, sees what is within 8 m. */
+void writeDrive(const fs::path& file, double roll) {
+  labeled_cloud::RawlogWriter writer(file);
+  for (int second = 0; second <= 20; ++second) {
+    auto scan = labeledCloud(second, {}, {});
+    scan.sensorPose = {0, 0, 1, 0, 0, roll};
+    for (float x = -8; x < 8; x += 0.4f)
+      for (float y = -8; y < 8; y += 0.4f) scan.cloud.points.emplace_back(x, y, -1.1f);
+    scan.cloud.classes.assign(scan.cloud.points.size(), 1);
+    writer.write(robotPose(second, second));
+    writer.write(scan);
+  }
+  writer.finish();
+}
+
+TEST_F(Rawlog2SemanticMap, warnsOfALidarThatSeemsUpsideDown) {
+  for (const bool isFlipped : {false, true}) {
+    writeDrive(folder / "drive.rawlog", isFlipped ? M_PI : 0);
+    const std::string said = succeeded(run("drive.rawlog")).output;
+    EXPECT_EQ(contains(said, "Warning: ") && contains(said, "upside down"), isFlipped) << said;
+  }
+}
+
+TEST_F(Rawlog2SemanticMap, warnsOfDepthInAnotherUnit) {
+  const auto saidOf = [&](float unit, const Words& more = {}) {
+    auto image = depthImage(10, 3, 4);
+    image.rangeUnits = unit;
+    writeSmallRawlog(folder / "depth.rawlog", robotPose(10, 0), image);
+    return succeeded(run("depth.rawlog", more)).output;
+  };
+  EXPECT_FALSE(contains(saidOf(1e-3f), "another unit"));
+  EXPECT_TRUE(contains(saidOf(1e-6f), "Multiplied by 1000 they would fit"));
+  EXPECT_TRUE(contains(saidOf(1, {"--max-range", "20"}), "Divided by 1000 they would fit"));
+}

@@ -257,6 +257,8 @@ TEST(LabelFolder, badFoldersAndNamesAreNamed) {
   save(folder, "frame.png", filledWith(1));
   std::filesystem::remove(folder / "1.50.png");
   EXPECT_TRUE(contains(error(folder.path()), "frame.png: the label image's name is not a time"));
+  std::filesystem::rename(folder / "frame.png", folder / "1700000000123456789.png");
+  EXPECT_TRUE(contains(error(folder.path()), "it looks like nanoseconds"));
   LabelFolderOptions options;
   options.tolerance = -1;
   EXPECT_TRUE(

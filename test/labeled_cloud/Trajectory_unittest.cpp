@@ -136,6 +136,7 @@ TEST(TumTrajectory, errorsNameFileAndLine) {
            {"0 0 nan 0 0 0 0 1\n", ":1: expected"},
            {"0 0 0 0 0 0 0 1 2\n", ":1: more than eight values"},
            {"1e300 0 0 0 0 0 0 1\n", "s is no time"},
+           {"1700000000123456789 0 0 0 0 0 0 1\n", "looks like nanoseconds: divide by 1000000000"},
            {"0 0 0 0 0 0 0 0\n", ":1: the quaternion's length is 0"},
            {"0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n", ":2: this time was there"},
            {"# nothing\n", ": no pose in this trajectory"}})

@@ -53,7 +53,7 @@ std::string kindOfFolder(const fs::path& folder) {
     return makesOne("a KITTI sequence", "semantic-kitti", folder);
   if (fs::exists(folder / "depth.txt")) return makesOne("a TUM RGB-D sequence", "tum", folder);
   if (fileIn(folder, {".mcap", ".db3"})) return makesOne("a bag of ROS 2", "rosbag2", folder);
-  if (fileIn(folder, {".pcd", ".ply"})) return makesOne("a folder of point clouds", "pcd", folder);
+  if (fileIn(folder, {".pcd"})) return makesOne("a folder of point clouds", "pcd", folder);
   if (MapFolder::isAt(folder)) return "a map";
   const auto rawlog = fileIn(folder, {".rawlog"});
   return "a folder" + (rawlog ? "; did you mean '" + rawlog->string() + "'?" : "");
@@ -70,7 +70,7 @@ bool isCarmens(const fs::path& file) {
 std::string kindOfFile(const fs::path& file) {
   const std::string ending = file.extension();
   if (ending == ".mcap" || ending == ".db3") return makesOne("a bag of ROS 2", "rosbag2", file);
-  if (ending == ".pcd" || ending == ".ply") return makesOne("a point cloud", "pcd", file);
+  if (ending == ".pcd") return makesOne("a point cloud", "pcd", file);
   if (ending == ".semantic") return "a map";
   if ((ending == ".log" || ending == ".clf") && isCarmens(file))
     return makesOne("a log of CARMEN", "carmen", file);

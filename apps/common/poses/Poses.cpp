@@ -41,14 +41,8 @@ TPose2D parsePose(const std::string& text) {
 
 CLI::Option* addPose(CLI::App& app, const std::string& name, TPose2D& pose,
                      const std::string& description) {
-  const auto take = [&pose, name](const std::string& text) {
-    try {
-      pose = parsePose(text);
-    } catch (const std::invalid_argument& e) {
-      throw CLI::ValidationError(name, e.what());
-    }
-  };
-  return app.add_option_function<std::string>(name, take, description)->type_name("X,Y,DEG");
+  const auto take = [&pose](const std::string& text) { pose = parsePose(text); };
+  return addParsed(app, name, "X,Y,DEG", take, description);
 }
 
 Eigen::Isometry3d poseOfNumbers(const std::array<double, 6>& v) {

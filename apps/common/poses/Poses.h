@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,20 @@ std::vector<double> parseNumbers(const std::string& text, std::size_t least, std
 
 /** "X,Y,DEG", meters and degrees. \throw std::invalid_argument naming the text */
 mrpt::math::TPose2D parsePose(const std::string& text);
+
+/** An option that hands its text to a function, whose errors are the command line's. */
+template <class Take>
+CLI::Option* addParsed(CLI::App& app, const std::string& name, const std::string& type, Take take,
+                       const std::string& description) {
+  const auto taken = [take, name](const std::string& text) {
+    try {
+      take(text);
+    } catch (const std::invalid_argument& e) {
+      throw CLI::ValidationError(name, e.what());
+    }
+  };
+  return app.add_option_function<std::string>(name, taken, description)->type_name(type);
+}
 
 /** A pose of a command line: "X,Y,DEG". */
 CLI::Option* addPose(CLI::App& app, const std::string& name, mrpt::math::TPose2D& pose,

@@ -197,14 +197,6 @@ bool areGiven(const std::vector<Named>& values) {
 
 }  // namespace
 
-const strict_files::Choices<CameraDescription::Distortion>& choicesOf(
-    CameraDescription::Distortion) {
-  using Distortion = CameraDescription::Distortion;
-  static const strict_files::Choices<Distortion> choices = {
-      {"plumb_bob", Distortion::PlumbBob}, {"kannala_brandt", Distortion::KannalaBrandt}};
-  return choices;
-}
-
 void CameraDescription::describe(strict_files::OptionList& list) {
   list.add("cols", cols, "pixels", atLeast(1), "size of the images");
   list.add("rows", rows, "pixels", atLeast(1), "size of the images");
@@ -212,8 +204,8 @@ void CameraDescription::describe(strict_files::OptionList& list) {
   list.add("fy", fy, "pixels", above(0), "focal length");
   list.add("cx", cx, "pixels", "principal point");
   list.add("cy", cy, "pixels", "principal point");
-  list.add("distortion", distortion, "", "model of the lens");
-  list.add("dist", dist, "", "its coefficients in MRPT's order, separated by spaces");
+  list.add("dist", dist, "",
+           "coefficients of the lens (plumb_bob) in MRPT's order, separated by spaces");
   list.add("pose_x", x, "m", "place of the camera on the robot");
   list.add("pose_y", y, "m", "place of the camera on the robot");
   list.add("pose_z", z, "m", "place of the camera on the robot");
@@ -225,9 +217,7 @@ void CameraDescription::describe(strict_files::OptionList& list) {
 CameraCalibration CameraDescription::calibration() const {
   CameraCalibration calibration;
   mrpt::img::TCamera camera;
-  camera.distortion = distortion == Distortion::PlumbBob
-                          ? mrpt::img::DistortionModel::plumb_bob
-                          : mrpt::img::DistortionModel::kannala_brandt;
+  camera.distortion = mrpt::img::DistortionModel::plumb_bob;
   std::istringstream stream(dist);
   const strict_files::ClassicNumbers classic(stream);
   std::size_t count = 0;

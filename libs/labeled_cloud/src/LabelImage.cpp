@@ -7,7 +7,6 @@
 #include <opencv2/core.hpp>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <unordered_map>
@@ -135,13 +134,12 @@ fs::path confidencesOf(const fs::path& labels) {
 
 Clock::time_point timeInName(const fs::path& file) {
   const std::string stem = file.stem().string();
-  double seconds = 0;
-  const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), seconds);
   try {
-    if (error == std::errc() && end == stem.data() + stem.size()) return timeOfSeconds(seconds);
-  } catch (const std::invalid_argument&) {
+    return timeOfSeconds(strict_files::numberOf(stem));
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(file.string() +
+                             ": the label image's name is not a time in seconds: " + e.what());
   }
-  throw std::runtime_error(file.string() + ": the label image's name is not a time in seconds");
 }
 
 /** Name of the first image of the observation that is stored in a file of its own. */
@@ -195,17 +193,8 @@ LabelFolder::LabelFolder(const fs::path& folder, const semantic_types::ClassTabl
 }
 
 std::optional<fs::path> LabelFolder::nearest(Clock::time_point time) const {
-  std::optional<fs::path> best;
-  Clock::duration least = std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(m_options.tolerance));
-  const auto consider = [&](const auto& candidate) {
-    const auto apart = candidate.first < time ? time - candidate.first : candidate.first - time;
-    if (apart <= least) least = apart, best = candidate.second;
-  };
-  const auto after = m_byTime.lower_bound(time);
-  if (after != m_byTime.end()) consider(*after);
-  if (after != m_byTime.begin()) consider(*std::prev(after));
-  return best;
+  const std::chrono::duration<double> tolerance(m_options.tolerance);
+  return nearestIn(m_byTime, time, std::chrono::duration_cast<Clock::duration>(tolerance));
 }
 
 std::optional<fs::path> LabelFolder::named(const CObservation& observation) const {

@@ -21,15 +21,18 @@ using ImagePoints = std::vector<cv::Point2d>;
 
 /** Pixels of a camera and where they look: x right, y down at depth 1 (the optical frame). Lenses
  * are as OpenCV and MRPT describe them: plumb_bob with radial coefficients k1 to k6 and tangential
- * ones p1 and p2, or kannala_brandt with k1 to k4. */
+ * ones p1 and p2. */
 class Lens {
  public:
-  /** \throw std::invalid_argument the camera is not calibrated. */
+  /** \throw std::invalid_argument the camera is not calibrated, or has a fisheye. */
   explicit Lens(const mrpt::img::TCamera& camera) : m_camera(camera) {
     if (!(camera.fx() > 0 && camera.fy() > 0))
       throw std::invalid_argument(
           "the camera is not calibrated: fx = " + std::to_string(camera.fx()) +
           ", fy = " + std::to_string(camera.fy()));
+    if (camera.distortion == DistortionModel::kannala_brandt)
+      throw std::invalid_argument(
+          "the camera has a fisheye (kannala_brandt), expected images without its distortion");
   }
 
   ImagePoints undistort(ImagePoints pixels) const {
@@ -59,36 +62,22 @@ class Lens {
   }
 
  private:
+  bool isPlain() const { return m_camera.distortion != DistortionModel::plumb_bob; }
   /** Between a ray without a lens and behind it, both at depth 1. */
   cv::Point2d bent(const cv::Point2d& ray) const {
-    if (m_camera.distortion == DistortionModel::plumb_bob)
-      return ray * radial(ray.dot(ray)) + tangential(ray);
-    const double r = std::hypot(ray.x, ray.y);
-    if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
-    return ray * (fisheyeAngle(std::atan(r)) / r);
+    return isPlain() ? ray : ray * radial(ray.dot(ray)) + tangential(ray);
   }
-  /** By fixed-point iteration, and for a fisheye by bisection of the angle, which grows with that
-   * behind the lens. */
+  /** By fixed-point iteration. */
   cv::Point2d straightened(const cv::Point2d& ray) const {
-    if (m_camera.distortion == DistortionModel::plumb_bob) {
-      constexpr int kMostSteps = 50;
-      constexpr double kExact = 1e-9;  // of a pixel
-      cv::Point2d straight = ray;
-      for (int i = 0; i < kMostSteps; ++i) {
-        straight = (ray - tangential(straight)) / radial(straight.dot(straight));
-        const cv::Point2d left = bent(straight) - ray;
-        if (std::hypot(left.x * m_camera.fx(), left.y * m_camera.fy()) < kExact) break;
-      }
-      return straight;
+    constexpr int kMostSteps = 50;
+    constexpr double kExact = 1e-9;  // of a pixel
+    cv::Point2d straight = ray;
+    for (int i = 0; i < kMostSteps && !isPlain(); ++i) {
+      straight = (ray - tangential(straight)) / radial(straight.dot(straight));
+      const cv::Point2d left = bent(straight) - ray;
+      if (std::hypot(left.x * m_camera.fx(), left.y * m_camera.fy()) < kExact) break;
     }
-    const double r = std::hypot(ray.x, ray.y);
-    if (m_camera.distortion != DistortionModel::kannala_brandt || r == 0) return ray;
-    double low = 0, high = M_PI / 2;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = (low + high) / 2;
-      (fisheyeAngle(middle) < r ? low : high) = middle;
-    }
-    return ray * (std::tan(low) / r);
+    return straight;
   }
   double radial(double r2) const {
     const auto& c = m_camera;
@@ -99,12 +88,6 @@ class Lens {
     const double r2 = ray.dot(ray), xy2 = 2 * ray.x * ray.y;
     return {m_camera.p1() * xy2 + m_camera.p2() * (r2 + 2 * ray.x * ray.x),
             m_camera.p1() * (r2 + 2 * ray.y * ray.y) + m_camera.p2() * xy2};
-  }
-  /** The angle behind a fisheye lens of a ray that comes in at an angle theta, radians. */
-  double fisheyeAngle(double theta) const {
-    const double t2 = theta * theta;
-    const auto& c = m_camera;
-    return theta * (1 + (((c.k4() * t2 + c.k3()) * t2 + c.k2()) * t2 + c.k1()) * t2);
   }
 
   mrpt::img::TCamera m_camera;

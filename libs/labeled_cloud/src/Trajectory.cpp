@@ -24,6 +24,19 @@ using mrpt::obs::CObservationRobotPose;
 using mrpt::poses::CPose3D;
 using mrpt::poses::CPose3DQuat;
 
+mrpt::Clock::time_point timeOfSeconds(double seconds) {
+  constexpr double kMost = 2e11;  // years: 6000; the clock has 64 bits of 100 ns
+  constexpr double kIn1980 = 315532800, kYear = 365.25 * 86400;
+  if (std::abs(seconds) <= kMost) return mrpt::Clock::fromDouble(seconds);
+  std::string why = strict_files::textOf(seconds) + " s is no time";
+  for (const auto& [unit, factor] :
+       {std::pair("nano", 1e9), std::pair("micro", 1e6), std::pair("milli", 1e3)})
+    if (const double years = (seconds / factor - kIn1980) / kYear; years > 0 && years < 100)
+      why += std::string("; it looks like ") + unit + "seconds: divide by " +
+             strict_files::textOf(factor);
+  throw std::invalid_argument(why);
+}
+
 namespace {
 
 double seconds(mrpt::Clock::duration d) { return std::chrono::duration<double>(d).count(); }
@@ -114,9 +127,6 @@ Trajectory loadTumTrajectory(const std::filesystem::path& file, const Trajectory
   return trajectory;
 }
 
-RawlogTrajectory::RawlogTrajectory(const TrajectoryOptions& options)
-    : m_robotPoses(options), m_movements(options), m_odometry(options) {}
-
 void RawlogTrajectory::add(const RawlogEntry& entry) {
   if (entry.actions) move(*entry.actions);
   if (entry.isFrame) addFrame(entry.observations);
@@ -170,9 +180,8 @@ void addNaming(const std::filesystem::path& file, const RawlogEntry& entry, Rawl
 
 }  // namespace
 
-Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs,
-                          const TrajectoryOptions& options) {
-  RawlogTrajectory collected(options);
+Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs) {
+  RawlogTrajectory collected;
   for (const auto& file : rawlogs) {
     RawlogReader reader(file);
     while (const auto entry = reader.next()) addNaming(file, *entry, collected);
@@ -181,13 +190,12 @@ Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs,
 }
 
 Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
-                          const TrajectoryOptions& options) {
-  Trajectory found = findTrajectory(rawlogs, options);
+                          const std::string& remedy) {
+  Trajectory found = findTrajectory(rawlogs);
   if (found.empty())
     throw std::runtime_error(
         (rawlogs.empty() ? std::string("no rawlog") : rawlogs.front().string()) +
-        ": no robot poses (CObservationRobotPose, movements, or "
-        "CObservationOdometry); give a trajectory file");
+        ": no robot poses (CObservationRobotPose, movements, or CObservationOdometry); " + remedy);
   return found;
 }
 

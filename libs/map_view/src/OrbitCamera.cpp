@@ -94,7 +94,7 @@ OrbitCamera OrbitCamera::ofText(const std::string& text) {
   for (; std::getline(words, word, ','); ++count)
     if (count < n.size()) n[count] = strict_files::numberOf(word);
   if (count != n.size())
-    throw std::invalid_argument("is '" + text + "', expected X,Y,Z,DISTANCE,AZIMUTH,ELEVATION");
+    throw std::invalid_argument("expected X,Y,Z,DISTANCE,AZIMUTH,ELEVATION, found '" + text + "'");
   OrbitCamera camera;
   camera.target = {n[0], n[1], n[2]};
   camera.distance = n[3], camera.azimuth = n[4], camera.elevation = n[5];

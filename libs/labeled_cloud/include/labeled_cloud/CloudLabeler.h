@@ -26,11 +26,8 @@ struct CameraCalibration {
 
 /** A calibration as files have it: the optics, or the pose, may be left out as a whole. */
 struct CameraDescription {
-  enum class Distortion { PlumbBob, KannalaBrandt };
-
   std::optional<double> cols, rows, fx, fy, cx, cy;  ///< pixels
-  Distortion distortion = Distortion::PlumbBob;
-  /** The distortion's coefficients in MRPT's order, separated by spaces. */
+  /** The lens's plumb_bob coefficients in MRPT's order, separated by spaces. */
   std::string dist;
   std::optional<double> x, y, z;           ///< of the optical frame in the robot's, m
   std::optional<double> yaw, pitch, roll;  ///< degrees
@@ -39,8 +36,6 @@ struct CameraDescription {
   /** \throw std::invalid_argument naming an option that is missing, or what is no coefficient. */
   CameraCalibration calibration() const;
 };
-const strict_files::Choices<CameraDescription::Distortion>& choicesOf(
-    CameraDescription::Distortion);
 
 struct CloudLabelerOptions {
   /** Largest time between a scan and the picture that labels it, s. */

@@ -85,8 +85,6 @@ class GzipOutputStream : public mrpt::io::CStream {
   std::uint64_t m_taken = 0;
 };
 
-class GzipOutputStream;
-
 /** Writes a compressed rawlog, which appears under its name when it is complete. */
 class RawlogWriter {
  public:

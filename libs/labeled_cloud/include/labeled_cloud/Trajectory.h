@@ -27,13 +27,9 @@ inline mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& T) {
 }
 
 /** A time in seconds since 1970, as data sets write it.
- * \throw std::invalid_argument it is not finite, or beyond what MRPT's clock can tell. */
-inline mrpt::Clock::time_point timeOfSeconds(double seconds) {
-  constexpr double kMost = 2e11;  // years: 6000; the clock has 64 bits of 100 ns
-  if (!(std::abs(seconds) <= kMost))
-    throw std::invalid_argument(std::to_string(seconds) + " s is no time");
-  return mrpt::Clock::fromDouble(seconds);
-}
+ * \throw std::invalid_argument it is not finite, or beyond what MRPT's clock can tell; of whole
+ * milliseconds, microseconds or nanoseconds, that it looks like these. */
+mrpt::Clock::time_point timeOfSeconds(double seconds);
 
 struct TrajectoryOptions {
   /** How far outside the trajectory its first or last pose still holds, s. */
@@ -83,9 +79,6 @@ Trajectory loadTumTrajectory(const std::filesystem::path& file,
 class RawlogTrajectory {
  public:
   enum class Source { None, RobotPoses, Movements, Odometry };
-
-  explicit RawlogTrajectory(const TrajectoryOptions& options = {});
-
   /** Takes the poses of the next entry. \throw std::invalid_argument a pose is not finite. */
   void add(const RawlogEntry& entry);
 
@@ -105,11 +98,24 @@ class RawlogTrajectory {
 
 /** Reads all poses of some rawlogs that continue each other, in that order; empty: there are none.
  * \throw std::runtime_error as RawlogReader does, or naming the file: a pose is not finite. */
-Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs,
-                          const TrajectoryOptions& options = {});
-/** findTrajectory(). \throw std::runtime_error also if there are no poses: naming the file and what
- * would have been taken. */
+Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs);
+/** findTrajectory(). \throw std::runtime_error also if there are no poses: naming the file, what
+ * would have been taken, and the remedy. */
 Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,
-                          const TrajectoryOptions& options = {});
+                          const std::string& remedy = "give a trajectory file");
+
+/** What belongs to the time nearest to this one, no farther away than a tolerance. */
+template <class Time, class Value, class Duration>
+std::optional<Value> nearestIn(const std::map<Time, Value>& all, Time time, Duration tolerance) {
+  std::optional<Value> best;
+  const auto consider = [&](const auto& candidate) {
+    const auto apart = candidate.first < time ? time - candidate.first : candidate.first - time;
+    if (apart <= tolerance) tolerance = apart, best = candidate.second;
+  };
+  const auto after = all.lower_bound(time);
+  if (after != all.end()) consider(*after);
+  if (after != all.begin()) consider(*std::prev(after));
+  return best;
+}
 
 }  // namespace labeled_cloud
