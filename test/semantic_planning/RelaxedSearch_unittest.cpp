@@ -267,6 +267,25 @@ TEST_F(RelaxedSearch, findsAWayWhereThereIsOneForSingleColumns) {
   EXPECT_GT(ways, 10);
 }
 
+/** Between posts the way of longer steps may lead where the vehicle cannot turn. */
+TEST_F(RelaxedSearch, aPathThatOnlyTheWayBySingleColumnsLeadsToIsFound) {
+  options.shorten = true;
+  options.vehicle.footprint = Footprint::rectangle(-0.25, 0.55, 0.6);
+  options.vehicle.wheelTrack = 0.5;
+  start = {-20.5, 0, 0}, goal = {20.5, 0, 0};
+  for (const unsigned seed : {10u, 35u}) {
+    world = PaintedWorld();
+    world.floor(-22, 22, -8, 8, PaintedWorld::Road);
+    std::mt19937 random(seed);
+    const auto unit = [&] { return (random() >> 8) * 0x1p-24; };
+    for (int i = 0; i < 150; ++i) {
+      const double x = -19 + 38 * unit(), y = -7.8 + 15.6 * unit();
+      world.box(x, x + 0.3, y, y + 0.3, 0, 1, PaintedWorld::Wall);
+    }
+    expectDrivable(plan());
+  }
+}
+
 TEST_F(RelaxedSearch, keepsTheFootprintOffWalls) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);
