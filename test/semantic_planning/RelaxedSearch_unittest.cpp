@@ -17,7 +17,7 @@ class RelaxedSearch : public PlannerTest {
  protected:
   RelaxedPath search() {
     const Ground ground(map(), options.vehicle, options.ground, order);
-    const CollisionChecker checker(ground, options.vehicle, order, options.reading);
+    const CollisionChecker checker(ground, options.vehicle, order);
     return searchRelaxed(checker, *checker.place(start), *checker.place(goal));
   }
   std::vector<PathPoint> guide() { return search().path; }
@@ -203,7 +203,7 @@ TEST_F(RelaxedSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeig
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-4, 4, -2, 2, 2, 2.2, PaintedWorld::Road);  // a bridge
   const Ground ground(map(), options.vehicle, options.ground, order);
-  const CollisionChecker checker(ground, options.vehicle, order, options.reading);
+  const CollisionChecker checker(ground, options.vehicle, order);
   RelaxedField field(checker);
   RelaxedField::Cell before;
   int upon = 0;

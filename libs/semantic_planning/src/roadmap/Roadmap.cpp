@@ -60,10 +60,7 @@ void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
 std::vector<Roadmap::VertexId> Roadmap::replace(const std::vector<VertexId>& removed,
                                                 const std::vector<GroundPose>& poses,
                                                 const std::vector<ClassId>& classes) {
-  for (const VertexId v : removed) {
-    m_counts.edgesRemoved += m_graph.incident(v).size();
-    m_graph.removeVertex(v);
-  }
+  for (const VertexId v : removed) m_graph.removeVertex(v);
   std::vector<VertexId> ids;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ids.push_back(m_graph.addVertex(classes[i]));
@@ -101,7 +98,6 @@ void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
     link(a, b);
   } else if (!linked) {
     for (const EdgeId e : edges) m_graph.removeEdge(e);
-    m_counts.edgesRemoved += edges.size();
   }
 }
 
@@ -129,7 +125,6 @@ void Roadmap::linkOneWay(VertexId from, VertexId to) {
 void Roadmap::keepLength(EdgeId e, double length) {
   if (e >= m_lengths.size()) m_lengths.resize(e + 1);
   m_lengths[e] = length;
-  ++m_counts.edgesInserted;
 }
 
 /** The pairs that are to have edges. */
@@ -159,10 +154,8 @@ void Roadmap::reconcile() {
   for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
     if (!m_graph.containsEdge(e)) continue;
     const auto [a, b] = std::minmax(m_graph.edge(e).a, m_graph.edge(e).b);
-    if (m_nearest->contains(a) && m_nearest->contains(b) && !wanted.count({a, b})) {
+    if (m_nearest->contains(a) && m_nearest->contains(b) && !wanted.count({a, b}))
       m_graph.removeEdge(e);
-      ++m_counts.edgesRemoved;
-    }
   }
   for (const auto& [a, b] : wanted) setLinked(a, b, true);
 }
@@ -193,7 +186,6 @@ void Roadmap::reevaluate(EdgeId e) {
   auto profile = evaluate(e);
   const bool usable = before.state == EdgeState::Usable;
   if (profile ? usable && isSame(*profile, before.profile) : !usable) return;
-  ++m_counts.edgesChanged;
   if (profile)
     m_graph.setProfile(e, std::move(*profile));
   else
@@ -218,8 +210,6 @@ std::optional<EdgeProfile> Roadmap::evaluate(EdgeId e) const {
 Length Roadmap::lengthBound(VertexId a, VertexId b) const {
   return colored_graph::lengthDown(m_checker.reedsShepp().lowerBound(pose(a).pose, pose(b).pose));
 }
-
-Roadmap::Counts Roadmap::takeCounts() { return std::exchange(m_counts, {}); }
 
 using colored_graph::EdgeId;
 using colored_graph::VertexId;
@@ -250,8 +240,7 @@ const Choices<GraphKind>& choicesOf(GraphKind) {
   static const Choices<GraphKind> choices = {{"compressed", GraphKind::Compressed},
                                              {"leaves", GraphKind::Leaves},
                                              {"halton", GraphKind::Halton},
-                                             {"halton_drivable", GraphKind::HaltonDrivable},
-                                             {"full", GraphKind::Full}};
+                                             {"halton_drivable", GraphKind::HaltonDrivable}};
   return choices;
 }
 
@@ -264,19 +253,12 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
   buffers.withInfinity = true;
   list.add("graph", kind, "",
            "vertices of the graph: cells of the compressed tree, leaves of the map, N draws of a "
-           "Halton sequence, draws until N are on drivable ground, or a grid of the ground");
+           "Halton sequence, or draws until N are on drivable ground");
   list.add("vertices", vertices, "", "number of vertices (N); 0: all that the map has");
   list.add("buffer", buffer, "m", buffers,
            "distance of vertices from the line from start to goal, at most");
 }
 
 void RoadmapOptions::validate() const { strict_files::checkOptions(*this, "RoadmapOptions"); }
-
-const Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind) {
-  using Kind = ClassReading::Kind;
-  static const Choices<Kind> choices = {
-      {"likeliest", Kind::Likeliest}, {"expected", Kind::Expected}, {"cautious", Kind::Cautious}};
-  return choices;
-}
 
 }  // namespace semantic_planning

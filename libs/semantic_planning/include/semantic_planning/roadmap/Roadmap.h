@@ -59,12 +59,6 @@ class Roadmap {
   /** As colored_graph::SearchOptions::lengthBound. */
   colored_graph::Length lengthBound(VertexId a, VertexId b) const;
 
-  struct Counts {
-    std::size_t edgesInserted = 0, edgesRemoved = 0, edgesChanged = 0;
-  };
-  /** Since the last call. */
-  Counts takeCounts();
-
  private:
   std::vector<EdgeId> edgesBetween(VertexId a, VertexId b) const;
   void link(VertexId a, VertexId b);
@@ -85,7 +79,6 @@ class Roadmap {
   std::vector<GroundPose> m_poses;  ///< by vertex id
   std::vector<double> m_lengths;    ///< of the curves by edge id, meters
   std::set<VertexId> m_queryVertices;
-  Counts m_counts;
 };
 
 }  // namespace semantic_planning
