@@ -121,7 +121,6 @@ TEST_F(PlannerTest, theRoadmapFollowsTheCompressedTree) {
 
 TEST_F(PlannerTest, theBudgetOfEdgesHoldsAfterUpdatesAndTheBestOnesAreIn) {
   paintCorner();
-  options.roadmap.vertices = 0;
   options.roadmap.maxEdges = 700;
   SemanticPlanner p = planner();
   p.plan(start, goal);

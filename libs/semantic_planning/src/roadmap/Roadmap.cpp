@@ -85,20 +85,11 @@ void Roadmap::removeQueryVertex(VertexId v) {
   m_queryVertices.erase(v);
 }
 
-std::vector<Roadmap::EdgeId> Roadmap::edgesBetween(VertexId a, VertexId b) const {
-  std::vector<EdgeId> edges;
-  for (const Incidence& i : m_graph.incident(a))
-    if (i.neighbor == b) edges.push_back(i.edge);
-  return edges;
-}
-
-void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
-  const std::vector<EdgeId> edges = edgesBetween(a, b);
-  if (linked && edges.empty()) {
+/** Unless they are. */
+void Roadmap::connect(VertexId a, VertexId b) {
+  const auto& edges = m_graph.incident(a);
+  if (std::none_of(edges.begin(), edges.end(), [b](const auto& i) { return i.neighbor == b; }))
     link(a, b);
-  } else if (!linked) {
-    for (const EdgeId e : edges) m_graph.removeEdge(e);
-  }
 }
 
 void Roadmap::link(VertexId a, VertexId b) {
@@ -157,7 +148,7 @@ void Roadmap::reconcile() {
     if (m_nearest->contains(a) && m_nearest->contains(b) && !wanted.count({a, b}))
       m_graph.removeEdge(e);
   }
-  for (const auto& [a, b] : wanted) setLinked(a, b, true);
+  for (const auto& [a, b] : wanted) connect(a, b);
 }
 
 void Roadmap::reconcileQueryVertex(VertexId query) {
@@ -169,8 +160,8 @@ void Roadmap::reconcileQueryVertex(VertexId query) {
       wanted.insert(other);
   const colored_graph::Incidences present = m_graph.incident(query);  // the graph changes below
   for (const Incidence& i : present)
-    if (!wanted.count(i.neighbor)) setLinked(query, i.neighbor, false);
-  for (const VertexId other : wanted) setLinked(query, other, true);
+    if (!wanted.count(i.neighbor)) m_graph.removeEdge(i.edge);
+  for (const VertexId other : wanted) connect(query, other);
 }
 
 void Roadmap::refresh(const std::vector<Column>& changedTiles) {

@@ -60,11 +60,10 @@ class Roadmap {
   colored_graph::Length lengthBound(VertexId a, VertexId b) const;
 
  private:
-  std::vector<EdgeId> edgesBetween(VertexId a, VertexId b) const;
   void link(VertexId a, VertexId b);
   void linkOneWay(VertexId from, VertexId to);
   void keepLength(EdgeId e, double length);
-  void setLinked(VertexId a, VertexId b, bool linked);
+  void connect(VertexId a, VertexId b);
   std::set<std::pair<VertexId, VertexId>> neighbors() const;
   void reconcile();
   void reconcileQueryVertex(VertexId query);
