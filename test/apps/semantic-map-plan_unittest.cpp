@@ -86,14 +86,12 @@ TEST_F(SemanticMapPlan, writesTheRoadmapForApplicationsOfMrpt) {
   EXPECT_TRUE(contains(info.output, "202"));
 }
 
-TEST_F(SemanticMapPlan, everyKindOfGraphAndReadingIsKnown) {
-  for (const char* graph : {"compressed", "halton", "halton_drivable", "full"})
+TEST_F(SemanticMapPlan, everyKindOfGraphIsKnown) {
+  for (const char* graph : {"compressed", "halton", "halton_drivable"})
     EXPECT_EQ(run("-8,0,0", "8,0,0", {"--graph", graph, "--no-shorten"}).status, 0) << graph;
-  for (const char* reading : {"likeliest", "expected", "cautious"})
-    EXPECT_EQ(run("-8,0,0", "8,0,0", {"--reading", reading}).status, 0) << reading;
 }
 
-TEST_F(SemanticMapPlan, setsOptionsOfGroundRoadmapReadingAndSearch) {
+TEST_F(SemanticMapPlan, setsOptionsOfGroundRoadmapAndSearch) {
   EXPECT_EQ(
       run("-8,0,0", "8,0,0", {"--fill-gap", "0.5", "--keep-off", "--buffer", "5", "--no-shorten"})
           .status,

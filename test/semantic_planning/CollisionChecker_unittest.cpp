@@ -152,7 +152,7 @@ class CollisionCheckerTest : public testing::Test {
   colored_graph::ClassOrder order{5, {{1}, {2}, {4}, {0}}};
   VehicleOptions vehicle;
   Ground ground{world.map(), vehicle, {}, order};
-  CollisionChecker checker{ground, vehicle, order, {}};
+  CollisionChecker checker{ground, vehicle, order};
   std::mt19937 random{5};
   int free = 0, blocked = 0, overcautious = 0;
 };

@@ -32,7 +32,7 @@ class FailingPlans : public PlannerTest {
 }  // namespace
 
 TEST_F(FailingPlans, areThoseOfABrokenPlannerAndTheMapStays) {
-  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Full, GraphKind::HaltonDrivable}) {
+  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::HaltonDrivable}) {
     options.roadmap.kind = kind;
     const semantic_octree::SemanticOcTree before = map();
     const PlanResult expected = plan();

@@ -31,8 +31,8 @@ class PlannerReader : public Reader {
     const UpdateResult u = m_planner.update();
     const PlanResult plan = m_planner.replan(m_start);
     std::ostringstream text;
-    text << u.tilesTouched << ' ' << u.tilesChanged << ' ' << u.verticesInserted << ' '
-         << u.verticesRemoved << ' ' << u.edgesChanged << ' ' << plan.reason << ' ' << plan.length;
+    text << u.tilesTouched << ' ' << u.tilesChanged << ' ' << plan.numVertices << ' '
+         << plan.numEdges << ' ' << plan.reason << ' ' << plan.length;
     return text.str();
   }
 

@@ -14,7 +14,7 @@ class PathTest : public PlannerTest {
   const semantic_planning::CollisionChecker& checker() {
     if (!m_ground) {
       m_ground.emplace(map(), options.vehicle, options.ground, order);
-      m_checker.emplace(*m_ground, options.vehicle, order, options.reading);
+      m_checker.emplace(*m_ground, options.vehicle, order);
     }
     return *m_checker;
   }

@@ -5,6 +5,9 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
+#include <set>
+#include <vector>
+
 #include "PaintedWorld.h"
 #include "PathChecker.h"
 
@@ -40,6 +43,16 @@ class PlannerTest : public testing::Test {
 
   static double meters(const PlanResult& plan, PaintedWorld::Class id) {
     return plan.lengthPerClass[id];
+  }
+  /** x, y, heading and height of a roadmap's vertices. */
+  static std::set<std::vector<double>> posesOf(const semantic_planning::Roadmap& roadmap) {
+    std::set<std::vector<double>> poses;
+    for (colored_graph::VertexId v = 0; v < roadmap.graph().vertexIdEnd(); ++v)
+      if (roadmap.graph().containsVertex(v)) {
+        const semantic_planning::GroundPose& g = roadmap.pose(v);
+        poses.insert({g.pose.x, g.pose.y, g.pose.phi, double(g.z)});
+      }
+    return poses;
   }
   void expectDrivable(const PlanResult& plan) {
     ASSERT_TRUE(plan.found()) << plan.reason;

@@ -99,7 +99,7 @@ TEST_F(PlannerTest, aCompressedGraphNeedsAMapWithGValues) {
   options.shorten = true;
   EXPECT_NO_THROW(SemanticPlanner(world.map(), order, options)) << "there is no graph";
   options.shorten = false;
-  options.roadmap.kind = GraphKind::Full;
+  options.roadmap.kind = GraphKind::Halton;
   EXPECT_NO_THROW(SemanticPlanner(world.map(), order, options));
 }
 

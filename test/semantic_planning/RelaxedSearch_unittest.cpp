@@ -17,7 +17,7 @@ class RelaxedSearch : public PlannerTest {
  protected:
   RelaxedPath search() {
     const Ground ground(map(), options.vehicle, options.ground, order);
-    const CollisionChecker checker(ground, options.vehicle, order, options.reading);
+    const CollisionChecker checker(ground, options.vehicle, order);
     return searchRelaxed(checker, *checker.place(start), *checker.place(goal));
   }
   std::vector<PathPoint> guide() { return search().path; }
@@ -203,7 +203,7 @@ TEST_F(RelaxedSearch, eachDrivableSurfaceHasANameInTheOrderOfTilesColumnsAndHeig
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-4, 4, -2, 2, 2, 2.2, PaintedWorld::Road);  // a bridge
   const Ground ground(map(), options.vehicle, options.ground, order);
-  const CollisionChecker checker(ground, options.vehicle, order, options.reading);
+  const CollisionChecker checker(ground, options.vehicle, order);
   RelaxedField field(checker);
   RelaxedField::Cell before;
   int upon = 0;
@@ -265,6 +265,25 @@ TEST_F(RelaxedSearch, findsAWayWhereThereIsOneForSingleColumns) {
     ++ways;
   }
   EXPECT_GT(ways, 10);
+}
+
+/** Between posts the way of longer steps may lead where the vehicle cannot turn. */
+TEST_F(RelaxedSearch, aPathThatOnlyTheWayBySingleColumnsLeadsToIsFound) {
+  options.shorten = true;
+  options.vehicle.footprint = Footprint::rectangle(-0.25, 0.55, 0.6);
+  options.vehicle.wheelTrack = 0.5;
+  start = {-20.5, 0, 0}, goal = {20.5, 0, 0};
+  for (const unsigned seed : {10u, 35u}) {
+    world = PaintedWorld();
+    world.floor(-22, 22, -8, 8, PaintedWorld::Road);
+    std::mt19937 random(seed);
+    const auto unit = [&] { return (random() >> 8) * 0x1p-24; };
+    for (int i = 0; i < 150; ++i) {
+      const double x = -19 + 38 * unit(), y = -7.8 + 15.6 * unit();
+      world.box(x, x + 0.3, y, y + 0.3, 0, 1, PaintedWorld::Wall);
+    }
+    expectDrivable(plan());
+  }
 }
 
 TEST_F(RelaxedSearch, keepsTheFootprintOffWalls) {

@@ -91,8 +91,8 @@ TEST_F(PlannerTest, takesTheStraightLineWhereClassesAreEqual) {
 
 TEST_F(PlannerTest, everyKindOfGraphFindsADrivablePath) {
   paintCorner();
-  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::Leaves, GraphKind::Halton,
-                               GraphKind::HaltonDrivable, GraphKind::Full}) {
+  for (const GraphKind kind :
+       {GraphKind::Compressed, GraphKind::Leaves, GraphKind::Halton, GraphKind::HaltonDrivable}) {
     options.roadmap.kind = kind;
     expectDrivable(plan());
   }
@@ -174,24 +174,6 @@ TEST_F(PlannerTest, takesTheWorseClassUnderTheWheels) {
   EXPECT_GT(meters(result, PaintedWorld::Mud), 0);
 }
 
-TEST_F(PlannerTest, expectedLengthsAndCautionSeeWhatTheLikeliestClassHides) {
-  world.floor(-6, 6, -6, 6, PaintedWorld::Road);
-  world.map();
-  world.floor(-6, 6, -6, 6, PaintedWorld::Road).map();
-  world.floor(-1, 1, -6, 6, PaintedWorld::Grass).map();  // now road is likelier, and grass possible
-  start = {-4, 0, 0};
-  goal = {4, 0, 0};
-  EXPECT_EQ(meters(plan(), PaintedWorld::Grass), 0);
-  options.reading = {ClassReading::Kind::Expected, 0.01};
-  const double expected = meters(plan(), PaintedWorld::Grass);
-  EXPECT_GT(expected, 0.02);
-  EXPECT_LT(expected, 1);
-  options.reading = {ClassReading::Kind::Cautious, 0.01};
-  EXPECT_NEAR(meters(plan(), PaintedWorld::Grass), 2, 0.6);
-  options.reading = {ClassReading::Kind::Cautious, 0.9};
-  EXPECT_EQ(meters(plan(), PaintedWorld::Grass), 0);
-}
-
 TEST_F(PlannerTest, verticesHeadAlongTheRoadBothWays) {
   paintCorner();
   options.roadmap.vertices = 2000;
@@ -228,7 +210,7 @@ TEST_F(PlannerTest, moreVerticesHaveMoreNeighbors) {
 
 TEST_F(PlannerTest, verticesAndEdgesStayWithinTheirBudgets) {
   paintCorner();
-  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::HaltonDrivable, GraphKind::Full}) {
+  for (const GraphKind kind : {GraphKind::Compressed, GraphKind::HaltonDrivable}) {
     options.roadmap.kind = kind;
     options.roadmap.vertices = 300;
     options.roadmap.maxEdges = 900;

@@ -135,8 +135,7 @@ TEST_F(StreetPlan, aCarKeepsToTheRoadAndGoesAroundWhereItsLaneIsClosed) {
   const Box lane{-13.5, -8.5, 9, 11};
   EXPECT_TRUE(goesThrough(open, lane));
   recolor(*map, planner.ground(), lane, "other-ground");
-  const UpdateResult update = planner.update();
-  EXPECT_GT(update.edgesChanged + update.edgesInserted + update.edgesRemoved, 0u);
+  planner.update();
   const PlanResult closed = planner.replan(start);
   ASSERT_TRUE(closed.found()) << closed.reason;
   EXPECT_EQ(meters(closed, "other-ground"), 0);

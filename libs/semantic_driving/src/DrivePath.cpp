@@ -176,9 +176,7 @@ bool PathJudgment::isClearlyBetterThan(const PathJudgment& other, double mostBac
 }
 
 PathCheck::PathCheck(const SemanticPlanner& planner)
-    : m_planner(planner),
-      m_checker(planner.ground(), planner.options().vehicle, planner.order(),
-                planner.options().reading) {}
+    : m_planner(planner), m_checker(planner.ground(), planner.options().vehicle, planner.order()) {}
 
 PathJudgment PathCheck::judge(const DrivePath& path, double from) const {
   PathJudgment judgment;

@@ -19,8 +19,7 @@ constexpr double kInside = 1e-3;  // m
 
 ForwardTurns::ForwardTurns(const SemanticPlanner& planner, double longest)
     : m_planner(planner),
-      m_checker(planner.ground(), planner.options().vehicle, planner.order(),
-                planner.options().reading),
+      m_checker(planner.ground(), planner.options().vehicle, planner.order()),
       m_longest(longest) {}
 
 double ForwardTurns::priceOf(const DrivePath& path, double from, double to) const {

@@ -48,7 +48,7 @@ class Claim {
  public:
   Claim(const SemanticPlanner& planner, const TPose2D& goal)
       : m_ground(planner.ground()),
-        m_checker(m_ground, planner.options().vehicle, planner.order(), planner.options().reading),
+        m_checker(m_ground, planner.options().vehicle, planner.order()),
         m_goal(goal) {}
 
   /** f(column, only wheels) */

@@ -62,7 +62,7 @@ class RecoverySearch {
         m_order(allowingAll(planner.order())),
         m_ground(planner.ground().map(), m_vehicle, withoutKeepingOff(planner.options().ground),
                  m_order),
-        m_checker(m_ground, m_vehicle, m_order, planner.options().reading) {}
+        m_checker(m_ground, m_vehicle, m_order) {}
 
   DrivePath search(const TPose2D& from, double nearest) {
     const auto start = m_checker.place(from, m_z);

@@ -135,7 +135,10 @@ Ground::Ground(Ground&&) noexcept = default;
 std::vector<Column> Ground::update(const semantic_octree::TileChange& change) {
   if (m_isLimited && (change.all || !change.tiles.empty()))
     throw std::logic_error("Ground: a part of a map's ground does not follow changes");
-  return m_tiles->update(touchedBy(change));
+  std::vector<Column> tiles = change.all ? m_tiles->known() : std::vector<Column>();
+  for (const octomap::OcTreeKey& key : change.tiles) tiles.push_back(tileOf({key[0], key[1]}));
+  sortOut(tiles);
+  return m_tiles->update(tiles);
 }
 
 std::vector<Column> Ground::assume(const std::vector<GroundPoint>& points) {
@@ -151,13 +154,6 @@ std::vector<Column> Ground::assume(const std::vector<GroundPoint>& points) {
     }
   }
   return m_tiles->assume(std::move(ground));
-}
-
-std::vector<Column> Ground::touchedBy(const semantic_octree::TileChange& change) const {
-  std::vector<Column> tiles = change.all ? m_tiles->known() : std::vector<Column>();
-  for (const octomap::OcTreeKey& key : change.tiles) tiles.push_back(tileOf({key[0], key[1]}));
-  sortOut(tiles);
-  return tiles;
 }
 
 SurfaceRange Ground::surfaces(Column c) const { return surfacesAt(m_tiles->surfaces(), c); }

@@ -24,9 +24,11 @@ class Square {
       for (int done = 0, more = 0; done < reach; done += more) {
         more = std::min(2 * done + 1, reach - done);
         const std::vector<std::int16_t> before = m_numbers;
-        const std::size_t offset = static_cast<std::size_t>(more * stride);
-        for (std::size_t i = offset; i + offset < before.size(); ++i)
-          m_numbers[i] = better(before[i], better(before[i - offset], before[i + offset]));
+        const std::size_t end = before.size() - 2 * static_cast<std::size_t>(more * stride);
+        const std::int16_t *const low = before.data(), *const here = low + more * stride,
+                                  *const high = here + more * stride;
+        std::int16_t* __restrict const to = m_numbers.data() + more * stride;  // many at a time
+        for (std::size_t i = 0; i < end; ++i) to[i] = better(here[i], better(low[i], high[i]));
       }
   }
 
@@ -35,8 +37,8 @@ class Square {
   std::vector<std::int16_t> m_numbers;
 };
 
-constexpr auto lower = [](std::int16_t a, std::int16_t b) { return std::min(a, b); };
-constexpr auto higher = [](std::int16_t a, std::int16_t b) { return std::max(a, b); };
+constexpr auto lower = [](std::int16_t a, std::int16_t b) { return a < b ? a : b; };
+constexpr auto higher = [](std::int16_t a, std::int16_t b) { return a > b ? a : b; };
 
 constexpr std::int16_t kBelowAll = std::numeric_limits<std::int16_t>::min(),
                        kAboveAll = std::numeric_limits<std::int16_t>::max();

@@ -41,45 +41,36 @@ bool isAtBorder(Column c) {
   return x == 0 || y == 0 || x == kTileEdge - 1 || y == kTileEdge - 1;
 }
 
-/** The ground in parts of tiles: where the middle of a vehicle gets without leaving the tile, which
- * keeps the clearance that the smallest disc of its footprint needs. Parts are found square by
- * square when they are asked for, and kept; the ground is not. */
-class CoarseGround {
- public:
-  /** Which of a tile's parts. */
-  struct Id {
-    Column tile;
-    std::uint16_t number = 0;
-    bool operator==(const Id& o) const { return tile == o.tile && number == o.number; }
-    bool operator<(const Id& o) const { return tile == o.tile ? number < o.number : tile < o.tile; }
-  };
-  struct Part {
-    std::uint16_t number;
-    /** The best for which, together with better ones, there are as many columns as from one side
-     * of the tile to the other. */
-    colored_graph::Rank rank = 0;
-    std::vector<Id> next;  ///< in other tiles, one step of the wheels away
-  };
+/** A part of a tile's ground: where the middle of a vehicle gets without leaving the tile, which
+ * keeps the clearance that the smallest disc of its footprint needs. */
+using Id = std::pair<Column, std::uint16_t>;  ///< the tile, and which of its parts
 
-  CoarseGround(const semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
-               const PlannerOptions& options)
+struct Part {
+  /** The best for which, together with better ones, there are as many columns as from one side of
+   * the tile to the other. */
+  Rank rank = 0;
+  std::vector<Id> next;  ///< in other tiles, one step of the wheels away
+  Cost cost = RelaxedField::kUnreached;
+  Id before;  ///< the start's is itself
+};
+
+/** A* from part to part. Parts are found square by square when they are asked for, and kept; the
+ * ground is not. */
+class CorridorSearch {
+ public:
+  CorridorSearch(const semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
+                 const PlannerOptions& options)
       : m_map(map),
         m_order(order),
         m_options(options),
+        m_weights(weightsOfRanks(order)),
         m_radius(std::numeric_limits<double>::infinity()) {
     for (const Disc& disc : options.vehicle.footprint.coveringDiscs())
       m_radius = std::min(m_radius, disc.radius);
   }
 
-  const Part& at(const Id& id) {
-    makeSquare(squareOf(id.tile));
-    const std::vector<Part>& parts = *m_parts.find(id.tile);
-    return *std::find_if(parts.begin(), parts.end(),
-                         [&](const Part& part) { return part.number == id.number; });
-  }
-
   /** The nearest part to where the ground is, at most about a tile off. */
-  std::optional<Id> near(const mrpt::math::TPose2D& pose, std::optional<double> z) {
+  std::optional<Id> near(const TPose2D& pose, std::optional<double> z) const {
     const Column tile = tileOf({semantic_octree::keyOf(pose.x, m_map.getResolution()),
                                 semantic_octree::keyOf(pose.y, m_map.getResolution())});
     const std::vector<Column> around = tilesOf(tile, 1, 1);
@@ -96,13 +87,45 @@ class CoarseGround {
         const int dz = int(s.z) - place->surface.z, off = dx * dx + dy * dy + dz * dz;
         if (!s.drivable || off >= least) return;
         least = off;
-        nearest = Id{t, s.component};
+        nearest = Id(t, s.component);
       });
     });
     return nearest;
   }
 
+  /** The tiles on the way; none: there is no way. */
+  std::vector<Column> run(const Id& start, const Id& goal) {
+    const auto estimate = [&](const Id& id, Cost cost) {
+      return cost + kWeightOfLength * stepsBetween(id.first, goal.first);
+    };
+    const auto reach = [&](const Id& id, Cost cost, const Id& before) {
+      Part& part = at(id);
+      if (cost >= part.cost) return;
+      part.cost = cost;
+      part.before = before;
+      m_queue.push({estimate(id, cost), id});
+    };
+    reach(start, 0, start);
+    while (!m_queue.empty()) {
+      const auto [least, id] = m_queue.top();
+      m_queue.pop();
+      if (id == goal) return tilesTo(goal);
+      const Part& part = at(id);
+      if (least != estimate(id, part.cost)) continue;  // there was a better way to it
+      for (const Id& next : part.next)
+        reach(next, part.cost + stepsBetween(id.first, next.first) * m_weights[at(next).rank], id);
+    }
+    return {};
+  }
+
  private:
+  using Entry = std::pair<Cost, Id>;
+
+  Part& at(const Id& id) {
+    makeSquare(squareOf(id.first));
+    return m_parts.at(id);
+  }
+
   Ground groundIn(const std::vector<Column>& tiles) const {
     return Ground(m_map, m_options.vehicle, m_options.ground, m_order, tiles);
   }
@@ -135,42 +158,32 @@ class CoarseGround {
     m_madeSquares.at(square) = true;
   }
 
-  /** f(part, its column) for the parts of other tiles that the wheels get to from a surface. */
-  template <class F>
-  static void forNextTiles(const SurfaceGrid& parts, Column c, const Surface& from, int step, F f) {
+  void addParts(Column tile, const SurfaceGrid& parts, int step) {
+    const SurfaceTile* surfaces = parts.find(tile);
+    if (!surfaces) return;
+    std::map<Id, std::vector<int>> columnsOfRank;
+    forSurfacesOf(tile, *surfaces, [&](Column c, std::size_t i) {
+      const Surface& s = surfaces->surfaces[i];
+      if (!s.drivable) return;
+      const Id id(tile, s.component);
+      ++columnsOfRank.try_emplace(id, m_order.ranks()).first->second[m_order.rank(s.classId)];
+      if (isAtBorder(c)) addNext(parts, c, s, step, m_parts[id].next);
+    });
+    for (const auto& [id, columns] : columnsOfRank) m_parts[id].rank = rankOf(columns);
+  }
+
+  /** The parts of other tiles that the wheels get to from a surface. */
+  static void addNext(const SurfaceGrid& parts, Column c, const Surface& from, int step,
+                      std::vector<Id>& next) {
     for (int y = c.y - 1; y <= c.y + 1; ++y)
       for (int x = c.x - 1; x <= c.x + 1; ++x) {
         const Column tile = tileOf({x, y});
         if (tile == tileOf(c)) continue;
         const Surface* other = surfaceNear(parts, {x, y}, from.z, step);
-        if (other && other->drivable) f(Id{tile, other->component});
+        if (!other || !other->drivable) continue;
+        const Id id(tile, other->component);
+        if (std::find(next.begin(), next.end(), id) == next.end()) next.push_back(id);
       }
-  }
-
-  void addParts(Column tile, const SurfaceGrid& parts, int step) {
-    const SurfaceTile* surfaces = parts.find(tile);
-    if (!surfaces) return;
-    std::vector<Part> found;
-    std::vector<std::vector<int>> columnsOfRank;
-    std::vector<std::size_t> indexOf(surfaces->surfaces.size(), surfaces->surfaces.size());
-    forSurfacesOf(tile, *surfaces, [&](Column c, std::size_t i) {
-      const Surface& s = surfaces->surfaces[i];
-      if (!s.drivable) return;
-      std::size_t& index = indexOf[s.component];
-      if (index == surfaces->surfaces.size()) {
-        index = found.size();
-        found.push_back({s.component, 0, {}});
-        columnsOfRank.emplace_back(m_order.ranks());
-      }
-      ++columnsOfRank[index][m_order.rank(s.classId)];
-      std::vector<Id>& next = found[index].next;
-      if (isAtBorder(c))
-        forNextTiles(parts, c, s, step, [&](const Id& id) {
-          if (std::find(next.begin(), next.end(), id) == next.end()) next.push_back(id);
-        });
-    });
-    for (std::size_t i = 0; i < found.size(); ++i) found[i].rank = rankOf(columnsOfRank[i]);
-    if (!found.empty()) m_parts.at(tile) = std::move(found);
   }
 
   Rank rankOf(const std::vector<int>& columnsOfRank) const {
@@ -183,72 +196,24 @@ class CoarseGround {
     return rank;
   }
 
-  const semantic_octree::SemanticOcTree& m_map;
-  const colored_graph::ClassOrder& m_order;
-  const PlannerOptions& m_options;
-  double m_radius;  ///< of the smallest disc, meters
-  ColumnGrid<std::vector<Part>> m_parts;
-  ColumnGrid<char> m_madeSquares;
-};
-
-using Id = CoarseGround::Id;
-
-/** A* from part to part. */
-class CorridorSearch {
- public:
-  CorridorSearch(CoarseGround& ground, const colored_graph::ClassOrder& order)
-      : m_ground(ground), m_weights(weightsOfRanks(order)) {}
-
-  /** The tiles on the way; none: there is no way. */
-  std::vector<Column> run(const Id& start, const Id& goal) {
-    m_goal = goal.tile;
-    reach(start, {0, start, false});
-    while (!m_queue.empty()) {
-      const Id id = m_queue.top().second;
-      m_queue.pop();
-      if (id == goal) return tilesTo(goal);
-      Label& label = m_labels.at(id);
-      if (std::exchange(label.done, true)) continue;
-      for (const Id& next : m_ground.at(id).next) take(id, label.cost, next);
-    }
-    return {};
-  }
-
- private:
-  struct Label {
-    Cost cost;
-    Id before;  ///< the start's is itself
-    bool done;
-  };
-  using Entry = std::pair<Cost, Id>;
-
-  void take(const Id& from, Cost cost, const Id& to) {
-    cost += stepsBetween(from.tile, to.tile) *
-            m_weights[static_cast<std::size_t>(m_ground.at(to).rank)];
-    const auto known = m_labels.find(to);
-    if (known == m_labels.end() || cost < known->second.cost) reach(to, {cost, from, false});
-  }
-
-  void reach(const Id& id, const Label& label) {
-    m_labels[id] = label;
-    m_queue.push({label.cost + kWeightOfLength * stepsBetween(id.tile, m_goal), id});
-  }
-
   std::vector<Column> tilesTo(Id id) const {
-    std::vector<Column> tiles{id.tile};
-    while (!(m_labels.at(id).before == id)) {
-      id = m_labels.at(id).before;
-      tiles.push_back(id.tile);
+    std::vector<Column> tiles{id.first};
+    for (Id before = m_parts.at(id).before; before != id; before = m_parts.at(id).before) {
+      id = before;
+      tiles.push_back(id.first);
     }
     std::reverse(tiles.begin(), tiles.end());
     return tiles;
   }
 
-  CoarseGround& m_ground;
+  const semantic_octree::SemanticOcTree& m_map;
+  const colored_graph::ClassOrder& m_order;
+  const PlannerOptions& m_options;
   const std::vector<Cost> m_weights;  ///< of a length, by rank
-  std::map<Id, Label> m_labels;
+  double m_radius;                    ///< of the smallest disc, meters
+  std::map<Id, Part> m_parts;
+  ColumnGrid<char> m_madeSquares;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> m_queue;
-  Column m_goal;
 };
 
 }  // namespace
@@ -292,11 +257,11 @@ Corridor findCorridor(const semantic_octree::SemanticOcTree& map,
   const GroundShape shape(options.vehicle, options.ground, order, voxel);
   Corridor corridor{
       {{task.start.x, task.start.y}}, task.width, voxel * reachOfGround(shape) + 4 * edge};
-  CoarseGround ground(map, order, options);
-  const auto start = ground.near(task.start, task.startZ),
-             goal = ground.near(task.goal, task.goalZ);
+  CorridorSearch search(map, order, options);
+  const auto start = search.near(task.start, task.startZ),
+             goal = search.near(task.goal, task.goalZ);
   std::vector<Column> tiles;
-  if (start && goal) tiles = CorridorSearch(ground, order).run(*start, *goal);
+  if (start && goal) tiles = search.run(*start, *goal);
   for (const Column& tile : tiles) {
     const Column first = firstColumnOf(tile);
     corridor.way.emplace_back(semantic_octree::lowerBorderOf(first.x, voxel) + edge / 2,

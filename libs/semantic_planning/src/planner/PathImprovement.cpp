@@ -76,9 +76,10 @@ void describePath(const PathResult& path, const Roadmap& roadmap, const Collisio
 namespace {
 using mrpt::math::TPose2D;
 
+constexpr double kSpacing = 2.0;  ///< of stations, m along the path
+
 /** Where along the path its stations are: at its ends, and not too far apart between. */
 std::vector<std::size_t> pointsOf(const std::vector<PathPoint>& path, bool withGearChanges) {
-  constexpr double kSpacing = 2.0;  // m along the path
   std::vector<std::size_t> points{0};
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
     const bool changes = withGearChanges && path[i].forward != path[i + 1].forward;
@@ -146,6 +147,8 @@ class Improvement {
     offer(search(stationsBeside(way, 0.6, kTurn, kEverywhere), kSpanBeside));
     if (!m_result.found()) return;
     changeGearLess();
+    if (changesGear(m_result.path, 0, kEverywhere))
+      offer(search(stationsBeside(m_result.path, 0.3, kTurn / 2, kNear), kSpanBeside));
     smooth();
     if (!turnBetter()) return;
     changeGearLess();
@@ -157,19 +160,23 @@ class Improvement {
   }
 
   void changeGearLess() {
-    if (!changesGear(m_result.path, 0, kEverywhere)) return;
-    offer(search(stationsOn(m_result.path), kSpanOn));
-    if (offer(search(stationsBeside(m_result.path, 0.3, kTurn / 2, kNear), kSpanBeside)))
+    if (changesGear(m_result.path, 0, kEverywhere))
       offer(search(stationsOn(m_result.path), kSpanOn));
   }
 
   /** Adds the pose that is so far to the left of a point, seen in a direction, and heads there but
-   * for a turn, if the vehicle can be there. */
+   * for a turn, if the vehicle can be there. What leads to the same voxel two stations on is the
+   * same pose: along a straight way most are. */
   void add(const PathPoint& p, double direction, double sideways, double turn,
            Station& station) const {
     const TPose2D pose(p.x - sideways * std::sin(direction), p.y + sideways * std::cos(direction),
                        std::remainder(direction + turn, 2 * M_PI));
-    const auto placed = m_checker.place(pose, p.z);
+    const double same = m_checker.ground().voxelSize() / (2 * kSpacing);
+    const bool isThere = std::any_of(station.begin(), station.end(), [&](const GroundPose& other) {
+      return other.pose.x == pose.x && other.pose.y == pose.y &&
+             std::abs(std::remainder(other.pose.phi - pose.phi, 2 * M_PI)) < same;
+    });
+    const auto placed = isThere ? std::nullopt : m_checker.place(pose, p.z);
     if (placed && m_checker.fit(*placed) == Fit::Free &&
         m_checker.order().rank(m_checker.classAt(*placed)) != colored_graph::kForbidden)
       station.push_back(*placed);

@@ -61,8 +61,7 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
 struct PlannerCore::Sliced {
   Sliced(PlannerCore& core, std::optional<PlanResult> rest)
       : ground(core.m_ground.frozen()),
-        task{CollisionChecker(ground, core.m_options.vehicle, core.order(), core.m_options.reading)
-                 .forSearch(),
+        task{CollisionChecker(ground, core.m_options.vehicle, core.order()).forSearch(),
              *core.m_startPose, *core.m_goalPose, std::move(rest)},
         slices([this, &core] { solution = core.solve(task, clock); }) {}
 
@@ -82,8 +81,7 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_isInCorridor(corridor),
       m_ground(map, options.vehicle, options.ground, order,
                corridor ? std::optional(corridor->tiles(map.getResolution())) : std::nullopt),
-      m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order,
-                options.reading),
+      m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order),
       m_prices(m_checker.order()),
       m_kept(m_checker, m_prices),
       m_model{order, options.edges, options.cost, true},
@@ -264,12 +262,6 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   MapChange change;
   change.tilesTouched = touched.tiles.size();
   change.tiles = m_ground.update(touched);
-  if (m_options.reading.kind != ClassReading::Kind::Likeliest) {
-    // Classes are read from the map itself, which may change below ground that does not.
-    const std::vector<Column> all = m_ground.touchedBy(touched);
-    change.tiles.insert(change.tiles.end(), all.begin(), all.end());
-    sortOut(change.tiles);
-  }
   clock.end("ground");
   m_kept.groundChanged(change.tiles);
   if (m_sliced)
@@ -285,17 +277,7 @@ UpdateResult PlannerCore::update() {
   const MapChange change = followMap(clock);
   result.tilesTouched = change.tilesTouched;
   result.tilesChanged = change.tiles.size();
-  if (m_roadmap) {
-    m_roadmap->update(change.tiles);
-    const MapRoadmap::Counts vertices = m_roadmap->takeVertexCounts();
-    const Roadmap::Counts edges = m_roadmap->roadmap().takeCounts();
-    result.verticesInserted = vertices.inserted;
-    result.verticesRemoved = vertices.removed;
-    result.verticesRecolored = vertices.recolored;
-    result.edgesInserted = edges.edgesInserted;
-    result.edgesRemoved = edges.edgesRemoved;
-    result.edgesChanged = edges.edgesChanged;
-  }
+  if (m_roadmap) m_roadmap->update(change.tiles);
   clock.end("roadmap");
   result.times = clock.take();
   return result;

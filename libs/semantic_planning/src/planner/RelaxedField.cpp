@@ -199,10 +199,10 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
 }
 
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
-                          const GroundPose& goal, bool overForbidden) {
+                          const GroundPose& goal, bool overForbidden, bool bySingleColumns) {
   RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  const int stride = strideOf(checker);
+  const int stride = bySingleColumns ? 1 : strideOf(checker);
   RelaxedSearch(checker, overForbidden, stride).run(start, goal, guide);
   if (path.empty() && stride > 1)  // what classes leave free may be narrower than a step
     RelaxedSearch(checker, overForbidden, 1).run(start, goal, guide);

@@ -268,8 +268,10 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
 
 /** From column to column in eight directions, wherever there is ground: the way of least price. It
  * knows no turning radius. Steps are about as long as half the vehicle is wide where nothing is
- * near. \param overForbidden also over what the order forbids, at the price of the worst rank */
+ * near, and by single columns where those find none, or if they are all that is asked for.
+ * \param overForbidden also over what the order forbids, at the price of the worst rank */
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
-                          const GroundPose& goal, bool overForbidden = false);
+                          const GroundPose& goal, bool overForbidden = false,
+                          bool bySingleColumns = false);
 
 }  // namespace semantic_planning

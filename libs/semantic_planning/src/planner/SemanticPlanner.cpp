@@ -11,9 +11,6 @@ using semantic_octree::ReadLock;
 
 void PlannerOptions::describe(strict_files::OptionList& list) {
   roadmap.describe(list);
-  list.add(
-      "reading", reading.kind, "",
-      "class of a voxel: the likeliest, each by its probability, or the worst that is probable");
   list.add("shorten", shorten, "",
            "look for the path of least price; without: take the graph's best path");
   list.add("strict", strict, "",

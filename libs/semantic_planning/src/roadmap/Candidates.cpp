@@ -101,7 +101,7 @@ using semantic_octree::LeafCell;
 
 namespace {
 
-/** Largest distance between points in a large leaf, or of the grid, meters. */
+/** Largest distance between points in a large leaf, meters. */
 constexpr double kSpacing = 2;
 
 /** A square of columns in which one point is wanted. */
@@ -175,17 +175,6 @@ std::vector<CandidatePoint> compressedPoints(Column tile, const Abstraction& abs
           points.push_back({cell.center(), s.z, priorityOf(cell, options)});
     });
   }
-  return points;
-}
-
-std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
-                                       const RoadmapOptions& options) {
-  const int edge = powerOfTwoWithin(kSpacing / ground.voxelSize());
-  std::vector<CandidatePoint> points;
-  forCellsOf(firstColumnOf(tile), kTileEdge, edge, tile, [&](const Cell& cell) {
-    for (const Surface& s : ground.surfaces(cell.low))
-      if (s.drivable) points.push_back({cell.low, s.z, priorityOf(cell, options)});
-  });
   return points;
 }
 
@@ -264,10 +253,7 @@ CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Groun
 
 const std::vector<CandidatePoint>& CandidateStore::in(Column tile) {
   const auto [kept, isNew] = m_points.try_emplace(tile);
-  if (isNew && m_options.kind == GraphKind::Full)
-    kept->second = gridPoints(tile, m_ground, m_options);
-  else if (isNew)
-    kept->second = compressedPoints(tile, Abstraction(m_map), m_ground, m_options);
+  if (isNew) kept->second = compressedPoints(tile, Abstraction(m_map), m_ground, m_options);
   return kept->second;
 }
 

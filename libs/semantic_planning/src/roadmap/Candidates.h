@@ -78,10 +78,6 @@ std::vector<CandidatePoint> compressedPoints(Column tile,
                                              const semantic_octree::Abstraction& abstraction,
                                              const Ground& ground, const RoadmapOptions& options);
 
-/** Points upon the finest map's ground, on a grid. */
-std::vector<CandidatePoint> gridPoints(Column tile, const Ground& ground,
-                                       const RoadmapOptions& options);
-
 /** A point's poses: two in the directions in which the free space around of its class and better
  * ones runs, or one in a direction that looks random (of leaves as published). */
 std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
@@ -96,8 +92,8 @@ std::optional<GroundPose> haltonPose(unsigned draw, const PlanningRegion& region
  * the bound, in every neighborhood (ordered dithering, Bayer 1973). */
 double dither(unsigned x, unsigned y, unsigned seed);
 
-/** The candidate points of GraphKind::Compressed, Leaves and Full, which depend on the map and not
- * on start and goal: each tile's are looked for once and kept until the map changes there. */
+/** The candidate points of GraphKind::Compressed and Leaves, which depend on the map and not on
+ * start and goal: each tile's are looked for once and kept until the map changes there. */
 class CandidateStore {
  public:
   /** \param map, ground must outlive the store; with kinds of the tree (isOfTree) the map keeps

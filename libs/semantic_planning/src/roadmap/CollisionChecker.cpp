@@ -122,8 +122,6 @@ class CollisionChecker::Sweep {
       lengths[*m_worst] += length;
       return true;
     }
-    if (m_checker.m_reading.kind == ClassReading::Kind::Expected)
-      return m_checker.addExpected(placed, m_z, length, lengths);
     const WheelColumns wheels = m_checker.wheelColumns(placed);
     if (!m_worst || m_worstZ != m_z || wheels != m_wheels)
       m_worst = m_checker.worstUnder(wheels, m_z);
@@ -132,7 +130,7 @@ class CollisionChecker::Sweep {
     if (m_worst) lengths[*m_worst] += length;
     return m_worst.has_value();
   }
-  /** Under the wheels where classes were added; of a distribution it is not told. */
+  /** Under the wheels where classes were added. */
   std::optional<ClassId> worst() const { return m_worst; }
 
  private:
@@ -184,13 +182,8 @@ class CollisionChecker::Sweep {
 };
 
 CollisionChecker::CollisionChecker(const Ground& ground, const VehicleOptions& vehicle,
-                                   const colored_graph::ClassOrder& order,
-                                   const ClassReading& reading)
-    : m_ground(ground),
-      m_order(order),
-      m_reading(reading),
-      m_reedsShepp(vehicle.turningRadius),
-      m_motionCost(vehicle) {
+                                   const colored_graph::ClassOrder& order)
+    : m_ground(ground), m_order(order), m_reedsShepp(vehicle.turningRadius), m_motionCost(vehicle) {
   vehicle.validate();
   const double voxel = ground.voxelSize(), rise = std::tan(vehicle.maxSlope * M_PI / 180);
   const auto tolerance = [&](double distance) {
@@ -226,7 +219,7 @@ CollisionChecker CollisionChecker::forSearch() const {
   const int wheels = static_cast<int>(m_wheels.back() / m_ground.voxelSize()) + 1;
   int needed2 = 0;
   for (const CheckedDisc& d : m_discs) needed2 = std::max(needed2, d.needed2);
-  if (m_reading.kind == ClassReading::Kind::Likeliest && discs <= kMostReach)
+  if (discs <= kMostReach)
     checker.m_open =
         std::make_shared<OpenGround>(m_ground, OpenGround::Reach{discs, wheels}, needed2);
   return checker;
@@ -260,67 +253,18 @@ inline CollisionChecker::WheelColumns CollisionChecker::wheelColumns(
   return columns;
 }
 
-template <class F>
-bool CollisionChecker::forWheels(const WheelColumns& columns, int z, F f) const {
-  for (std::size_t i = 0; i < m_wheels.size(); ++i) {
-    const Surface* s = near(columns[i], z, m_wheelTolerance);
-    if (!s) return false;
-    f(*s, columns[i]);
-  }
-  return true;
-}
-
-inline ClassId CollisionChecker::read(Column c, const Surface& s) const {
-  if (m_reading.kind != ClassReading::Kind::Cautious || s.filled) return s.classId;
-  const auto node = m_ground.map().search(
-      {static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y), s.z});
-  if (!node) return s.classId;
-  const std::vector<double> p = m_ground.map().distribution(node);
-  ClassId worst = s.classId;
-  for (std::size_t id = 1; id < p.size(); ++id)
-    if (p[id] > m_reading.leastProbability * (1 - p[0]) && m_order.rank(id) > m_order.rank(worst))
-      worst = static_cast<ClassId>(id);
-  return worst;
-}
-
 std::optional<ClassId> CollisionChecker::worstUnder(const WheelColumns& wheels, int z) const {
   std::optional<ClassId> worst;
-  const bool grounded = forWheels(wheels, z, [&](const Surface& s, Column c) {
-    const ClassId id = read(c, s);
-    if (!worst || m_order.rank(id) > m_order.rank(*worst)) worst = id;
-  });
-  return grounded ? worst : std::nullopt;
+  for (std::size_t i = 0; i < m_wheels.size(); ++i) {
+    const Surface* s = near(wheels[i], z, m_wheelTolerance);
+    if (!s) return std::nullopt;
+    if (!worst || m_order.rank(s->classId) > m_order.rank(*worst)) worst = s->classId;
+  }
+  return worst;
 }
 
 ClassId CollisionChecker::classAt(const GroundPose& pose) const {
   return worstUnder(wheelColumns(Placement(pose.pose)), pose.z).value_or(semantic_types::kNoClass);
-}
-
-/** Spreads a length over the classes that a voxel may have. */
-void CollisionChecker::addDistribution(Column c, const Surface& s, double length,
-                                       Lengths& lengths) const {
-  semantic_octree::SemanticOcTreeNode node;
-  if (!s.filled)
-    node = m_ground.map().search(
-        {static_cast<std::uint16_t>(c.x), static_cast<std::uint16_t>(c.y), s.z});
-  if (!node) {
-    lengths[s.classId] += length;
-    return;
-  }
-  const std::vector<double> p = m_ground.map().distribution(node);
-  const double least = m_reading.leastProbability * (1 - p[0]);
-  double sum = 0;
-  for (std::size_t id = 1; id < p.size(); ++id) sum += p[id] > least ? p[id] : 0;
-  if (sum == 0) lengths[s.classId] += length;
-  for (std::size_t id = 1; id < p.size(); ++id)
-    if (p[id] > least) lengths[id] += length * p[id] / sum;
-}
-
-bool CollisionChecker::addExpected(const Placement& placed, int z, double length,
-                                   Lengths& lengths) const {
-  return forWheels(wheelColumns(placed), z, [&](const Surface& s, Column c) {
-    addDistribution(c, s, length / static_cast<double>(m_wheels.size()), lengths);
-  });
 }
 
 std::optional<EdgeProfile> CollisionChecker::profile(const GroundPose& a,

@@ -9,14 +9,11 @@ namespace semantic_planning {
 
 namespace {
 
-/** Whether a kind takes its vertices from a store. */
-bool isFinite(GraphKind kind) { return isOfTree(kind) || kind == GraphKind::Full; }
-
 RoadmapOptions withDefaults(RoadmapOptions options) {
   constexpr std::size_t kDefaultVertices = 1000;
   if (options.vertices == 0)
     options.vertices =
-        isFinite(options.kind) ? std::numeric_limits<std::size_t>::max() : kDefaultVertices;
+        isOfTree(options.kind) ? std::numeric_limits<std::size_t>::max() : kDefaultVertices;
   return options;
 }
 
@@ -89,24 +86,20 @@ void MapRoadmap::update(const std::vector<Column>& changedTiles) {
   std::vector<ClassId> classes;
   std::vector<colored_graph::VertexId> removed;
   auto before = std::exchange(m_vertices, {});
-  for (const GroundPose& pose : isFinite(m_options.kind) ? byPriority() : ofHalton()) {
+  for (const GroundPose& pose : isOfTree(m_options.kind) ? byPriority() : ofHalton()) {
     const ClassId id = m_checker.classAt(pose);
     if (const auto stays = before.find(pose); stays == before.end()) {
       inserted.push_back(pose);
       classes.push_back(id);
     } else {
-      if (m_roadmap.graph().vertexClass(stays->second) != id) {
+      if (m_roadmap.graph().vertexClass(stays->second) != id)
         m_roadmap.graph().setVertexClass(stays->second, id);
-        ++m_counts.recolored;
-      }
       m_vertices.insert(before.extract(stays));
     }
   }
   for (const auto& [pose, vertex] : before) removed.push_back(vertex);
   const auto ids = m_roadmap.replace(removed, inserted, classes);
   for (std::size_t i = 0; i < ids.size(); ++i) m_vertices.emplace(inserted[i], ids[i]);
-  m_counts.inserted += inserted.size();
-  m_counts.removed += removed.size();
   m_roadmap.refresh(changedTiles);
 }
 

@@ -13,17 +13,11 @@ namespace semantic_planning {
  * the map was before. */
 class MapRoadmap {
  public:
-  /** Vertices, counted since the last take. */
-  struct Counts {
-    std::size_t inserted = 0, removed = 0, recolored = 0;
-  };
-
   /** \param store, checker must outlive the roadmap \param start on the ground */
   MapRoadmap(CandidateStore& store, const CollisionChecker& checker, const RoadmapOptions& options,
              const GroundPose& start, const PlanningRegion& region);
 
   Roadmap& roadmap() { return m_roadmap; }
-  Counts takeVertexCounts() { return std::exchange(m_counts, {}); }
 
   /** The ground changed in these tiles. */
   void update(const std::vector<Column>& changedTiles);
@@ -47,7 +41,6 @@ class MapRoadmap {
   const GroundPose m_start;
   Roadmap m_roadmap;
   std::map<GroundPose, colored_graph::VertexId, IsBefore> m_vertices;
-  Counts m_counts;
 };
 
 }  // namespace semantic_planning

@@ -60,10 +60,7 @@ void Roadmap::keepPose(VertexId v, const GroundPose& pose) {
 std::vector<Roadmap::VertexId> Roadmap::replace(const std::vector<VertexId>& removed,
                                                 const std::vector<GroundPose>& poses,
                                                 const std::vector<ClassId>& classes) {
-  for (const VertexId v : removed) {
-    m_counts.edgesRemoved += m_graph.incident(v).size();
-    m_graph.removeVertex(v);
-  }
+  for (const VertexId v : removed) m_graph.removeVertex(v);
   std::vector<VertexId> ids;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ids.push_back(m_graph.addVertex(classes[i]));
@@ -88,21 +85,11 @@ void Roadmap::removeQueryVertex(VertexId v) {
   m_queryVertices.erase(v);
 }
 
-std::vector<Roadmap::EdgeId> Roadmap::edgesBetween(VertexId a, VertexId b) const {
-  std::vector<EdgeId> edges;
-  for (const Incidence& i : m_graph.incident(a))
-    if (i.neighbor == b) edges.push_back(i.edge);
-  return edges;
-}
-
-void Roadmap::setLinked(VertexId a, VertexId b, bool linked) {
-  const std::vector<EdgeId> edges = edgesBetween(a, b);
-  if (linked && edges.empty()) {
+/** Unless they are. */
+void Roadmap::connect(VertexId a, VertexId b) {
+  const auto& edges = m_graph.incident(a);
+  if (std::none_of(edges.begin(), edges.end(), [b](const auto& i) { return i.neighbor == b; }))
     link(a, b);
-  } else if (!linked) {
-    for (const EdgeId e : edges) m_graph.removeEdge(e);
-    m_counts.edgesRemoved += edges.size();
-  }
 }
 
 void Roadmap::link(VertexId a, VertexId b) {
@@ -129,7 +116,6 @@ void Roadmap::linkOneWay(VertexId from, VertexId to) {
 void Roadmap::keepLength(EdgeId e, double length) {
   if (e >= m_lengths.size()) m_lengths.resize(e + 1);
   m_lengths[e] = length;
-  ++m_counts.edgesInserted;
 }
 
 /** The pairs that are to have edges. */
@@ -159,12 +145,10 @@ void Roadmap::reconcile() {
   for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
     if (!m_graph.containsEdge(e)) continue;
     const auto [a, b] = std::minmax(m_graph.edge(e).a, m_graph.edge(e).b);
-    if (m_nearest->contains(a) && m_nearest->contains(b) && !wanted.count({a, b})) {
+    if (m_nearest->contains(a) && m_nearest->contains(b) && !wanted.count({a, b}))
       m_graph.removeEdge(e);
-      ++m_counts.edgesRemoved;
-    }
   }
-  for (const auto& [a, b] : wanted) setLinked(a, b, true);
+  for (const auto& [a, b] : wanted) connect(a, b);
 }
 
 void Roadmap::reconcileQueryVertex(VertexId query) {
@@ -176,8 +160,8 @@ void Roadmap::reconcileQueryVertex(VertexId query) {
       wanted.insert(other);
   const colored_graph::Incidences present = m_graph.incident(query);  // the graph changes below
   for (const Incidence& i : present)
-    if (!wanted.count(i.neighbor)) setLinked(query, i.neighbor, false);
-  for (const VertexId other : wanted) setLinked(query, other, true);
+    if (!wanted.count(i.neighbor)) m_graph.removeEdge(i.edge);
+  for (const VertexId other : wanted) connect(query, other);
 }
 
 void Roadmap::refresh(const std::vector<Column>& changedTiles) {
@@ -193,7 +177,6 @@ void Roadmap::reevaluate(EdgeId e) {
   auto profile = evaluate(e);
   const bool usable = before.state == EdgeState::Usable;
   if (profile ? usable && isSame(*profile, before.profile) : !usable) return;
-  ++m_counts.edgesChanged;
   if (profile)
     m_graph.setProfile(e, std::move(*profile));
   else
@@ -218,8 +201,6 @@ std::optional<EdgeProfile> Roadmap::evaluate(EdgeId e) const {
 Length Roadmap::lengthBound(VertexId a, VertexId b) const {
   return colored_graph::lengthDown(m_checker.reedsShepp().lowerBound(pose(a).pose, pose(b).pose));
 }
-
-Roadmap::Counts Roadmap::takeCounts() { return std::exchange(m_counts, {}); }
 
 using colored_graph::EdgeId;
 using colored_graph::VertexId;
@@ -250,8 +231,7 @@ const Choices<GraphKind>& choicesOf(GraphKind) {
   static const Choices<GraphKind> choices = {{"compressed", GraphKind::Compressed},
                                              {"leaves", GraphKind::Leaves},
                                              {"halton", GraphKind::Halton},
-                                             {"halton_drivable", GraphKind::HaltonDrivable},
-                                             {"full", GraphKind::Full}};
+                                             {"halton_drivable", GraphKind::HaltonDrivable}};
   return choices;
 }
 
@@ -264,19 +244,12 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
   buffers.withInfinity = true;
   list.add("graph", kind, "",
            "vertices of the graph: cells of the compressed tree, leaves of the map, N draws of a "
-           "Halton sequence, draws until N are on drivable ground, or a grid of the ground");
+           "Halton sequence, or draws until N are on drivable ground");
   list.add("vertices", vertices, "", "number of vertices (N); 0: all that the map has");
   list.add("buffer", buffer, "m", buffers,
            "distance of vertices from the line from start to goal, at most");
 }
 
 void RoadmapOptions::validate() const { strict_files::checkOptions(*this, "RoadmapOptions"); }
-
-const Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind) {
-  using Kind = ClassReading::Kind;
-  static const Choices<Kind> choices = {
-      {"likeliest", Kind::Likeliest}, {"expected", Kind::Expected}, {"cautious", Kind::Cautious}};
-  return choices;
-}
 
 }  // namespace semantic_planning

@@ -50,9 +50,6 @@ class Ground {
    * place of what was assumed before. Not in a ground that was made within some tiles only, nor in
    * that of a map that is read only. \return as update() */
   std::vector<Column> assume(const std::vector<GroundPoint>& points);
-  /** The tiles in which the map changed, sorted; those that the ground knows are among them if all
-   * did. */
-  std::vector<Column> touchedBy(const semantic_octree::TileChange& change) const;
 
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
   double voxelSize() const { return m_voxelSize; }

@@ -62,8 +62,6 @@ struct PlanResult {
 struct UpdateResult {
   std::size_t tilesTouched = 0;  ///< of 8 x 8 x 8 voxels of the map
   std::size_t tilesChanged = 0;  ///< of the ground
-  std::size_t verticesInserted = 0, verticesRemoved = 0, verticesRecolored = 0;
-  std::size_t edgesInserted = 0, edgesRemoved = 0, edgesChanged = 0;
   StageTimes times;
 };
 

@@ -18,7 +18,6 @@ struct PlannerOptions {
   VehicleOptions vehicle;
   GroundOptions ground;
   RoadmapOptions roadmap;
-  ClassReading reading;
   // For studies and tests, without a name in files: how a roadmap's paths are judged.
   colored_graph::EdgeModel edges = colored_graph::EdgeModel::Profile;
   colored_graph::CostKind cost = colored_graph::CostKind::ArcLength;

@@ -51,7 +51,7 @@ class CollisionChecker {
 
   /** \param ground must outlive the checker. \throw std::invalid_argument bad options. */
   CollisionChecker(const Ground& ground, const VehicleOptions& vehicle,
-                   const colored_graph::ClassOrder& order, const ClassReading& reading);
+                   const colored_graph::ClassOrder& order);
 
   /** One for a search: the same answers, sooner, for it keeps what it finds out about the ground.
    * For one thread, and as long as the ground stays as it is. */
@@ -98,17 +98,10 @@ class CollisionChecker {
   /** Under each wheel track; there are one or two. */
   using WheelColumns = std::array<Column, 2>;
   WheelColumns wheelColumns(const Placement& placed) const;
-  /** f(surface, its column) for the ground in each of them; false if there is none. */
-  template <class F>
-  bool forWheels(const WheelColumns& columns, int z, F f) const;
-  bool addExpected(const Placement& placed, int z, double length, Lengths& lengths) const;
-  void addDistribution(Column c, const Surface& s, double length, Lengths& lengths) const;
-  ClassId read(Column c, const Surface& s) const;
   std::optional<ClassId> worstUnder(const WheelColumns& wheels, int z) const;
 
   const Ground& m_ground;
   const colored_graph::ClassOrder m_order;
-  const ClassReading m_reading;
   ReedsShepp m_reedsShepp;
   MotionCost m_motionCost;
   std::vector<CheckedDisc> m_discs;

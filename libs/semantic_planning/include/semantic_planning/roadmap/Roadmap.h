@@ -59,18 +59,11 @@ class Roadmap {
   /** As colored_graph::SearchOptions::lengthBound. */
   colored_graph::Length lengthBound(VertexId a, VertexId b) const;
 
-  struct Counts {
-    std::size_t edgesInserted = 0, edgesRemoved = 0, edgesChanged = 0;
-  };
-  /** Since the last call. */
-  Counts takeCounts();
-
  private:
-  std::vector<EdgeId> edgesBetween(VertexId a, VertexId b) const;
   void link(VertexId a, VertexId b);
   void linkOneWay(VertexId from, VertexId to);
   void keepLength(EdgeId e, double length);
-  void setLinked(VertexId a, VertexId b, bool linked);
+  void connect(VertexId a, VertexId b);
   std::set<std::pair<VertexId, VertexId>> neighbors() const;
   void reconcile();
   void reconcileQueryVertex(VertexId query);
@@ -85,7 +78,6 @@ class Roadmap {
   std::vector<GroundPose> m_poses;  ///< by vertex id
   std::vector<double> m_lengths;    ///< of the curves by edge id, meters
   std::set<VertexId> m_queryVertices;
-  Counts m_counts;
 };
 
 }  // namespace semantic_planning

@@ -7,15 +7,14 @@ namespace semantic_planning {
 
 /** Where a roadmap's vertices come from. */
 enum class GraphKind {
-  Compressed,      ///< ground in the leaves of the map's compressed tree
-                   ///< (setAbstraction()); large ones have several points
-  Leaves,          ///< the same, one point a leaf and one heading that looks random, as published
-  Halton,          ///< a Halton sequence; samples off the ground or in the way are dropped
-  HaltonDrivable,  ///< the same, and goes on until there are as many drivable vertices as asked for
-  Full             ///< the ground of the finest map, on a grid
+  Compressed,     ///< ground in the leaves of the map's compressed tree
+                  ///< (setAbstraction()); large ones have several points
+  Leaves,         ///< the same, one point a leaf and one heading that looks random, as published
+  Halton,         ///< a Halton sequence; samples off the ground or in the way are dropped
+  HaltonDrivable  ///< the same, and goes on until there are as many drivable vertices as asked for
 };
 
-/** "compressed", "leaves", "halton", "halton_drivable", "full". */
+/** "compressed", "leaves", "halton", "halton_drivable". */
 const strict_files::Choices<GraphKind>& choicesOf(GraphKind);
 const char* nameOf(GraphKind kind);
 /** Whether a kind's points lie in leaves of the compressed tree, which the map then has to keep. */
@@ -24,8 +23,8 @@ bool isOfTree(GraphKind kind);
 /** How a roadmap is made. */
 struct RoadmapOptions {
   GraphKind kind = GraphKind::Compressed;
-  /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed, Leaves
-   * and Full have, 1000 for the others. */
+  /** Vertices, start and goal not counted; of Halton, samples. 0: all that Compressed and
+   * Leaves have, 1000 for the others. */
   std::size_t vertices = 1000;
   /** Vertices lie within this distance from the line between start and goal, meters. */
   double buffer = 30;
@@ -46,19 +45,5 @@ struct RoadmapOptions {
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
 };
-
-/** What of a ground voxel's class distribution counts. */
-struct ClassReading {
-  enum class Kind {
-    Likeliest,  ///< the likeliest class (of filled ground: see GroundOptions)
-    Expected,   ///< each class, with its probability: lengths per class are expected lengths
-    Cautious    ///< the worst class whose probability exceeds `leastProbability`
-  };
-  Kind kind = Kind::Likeliest;
-  /** Cautious, Expected: less probable classes do not count. For tests; it has no name in files. */
-  double leastProbability = 0.1;
-};
-/** "likeliest", "expected", "cautious". */
-const strict_files::Choices<ClassReading::Kind>& choicesOf(ClassReading::Kind);
 
 }  // namespace semantic_planning
