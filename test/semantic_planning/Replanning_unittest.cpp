@@ -102,27 +102,21 @@ TEST_F(PlannerTest, afterEveryChangeOfTheMapTheRepairedPathIsTheBest) {
 }
 
 TEST_F(PlannerTest, theRoadmapFollowsTheCompressedTree) {
-  paintCorner();
+  world.floor(-7, 7, -7, 7, PaintedWorld::Grass);
+  world.floor(-7, 7, -1.5, 1.5, PaintedWorld::Road);
+  start = {-5, 0, 0};
+  goal = {5, 0, 0};
   options.roadmap.vertices = 0;
   options.roadmap.neighbors = 3;
   options.shorten = false;
   SemanticPlanner p = planner();
   p.plan(start, goal);
-  for (int i = 0; i < 4; ++i) world.floor(0, 6, -8, -2, PaintedWorld::Road).map();
+  for (int i = 0; i < 4; ++i) world.floor(0, 4, -6, -2, PaintedWorld::Road).map();
   p.update();
   p.replan(start);
   SemanticPlanner fresh = planner();
   fresh.plan(start, goal);
-  const auto poses = [](const Roadmap& roadmap) {
-    std::set<std::tuple<double, double, double, int>> all;
-    for (colored_graph::VertexId v = 0; v < roadmap.graph().vertexIdEnd(); ++v)
-      if (roadmap.graph().containsVertex(v)) {
-        const GroundPose& g = roadmap.pose(v);
-        all.emplace(g.pose.x, g.pose.y, g.pose.phi, g.z);
-      }
-    return all;
-  };
-  EXPECT_EQ(poses(p.roadmap()), poses(fresh.roadmap()));
+  EXPECT_EQ(posesOf(p.roadmap()), posesOf(fresh.roadmap()));
   EXPECT_EQ(p.roadmap().graph().edgeCount(), fresh.roadmap().graph().edgeCount());
 }
 
