@@ -151,6 +151,24 @@ TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) 
   }
 }
 
+TEST(Queries, ofAnInnerNodeCountClassesOfLargeLeavesByTheirVolume) {
+  SemanticOcTree tree(1.0, numberedClasses(2));
+  LabeledCloud cloud;
+  for (int i = 0; i < 8; ++i) cloud.points.emplace_back(i % 2 + .5f, i / 2 % 2 + .5f, i / 4 + .5f);
+  cloud.points.emplace_back(2.5f, 0.5f, 0.5f);
+  cloud.classes = {1, 1, 1, 1, 1, 1, 1, 1, 2};
+  InsertionOptions noRays;
+  noRays.carvingMargin = 1e3;
+  tree.insert(cloud, Eigen::Isometry3d::Identity(), noRays);
+  ASSERT_EQ(tree.getNumLeafNodes(), 2u);
+  const auto large = tree.distribution(tree.search(keyOf({0, 0, 0}))),
+             single = tree.distribution(tree.search(keyOf({2, 0, 0})));
+  const double one = 8 * large[1] + single[1], two = 8 * large[2] + single[2];
+  const CellState state = tree.query(keyOf({0, 0, 0}), 14);
+  EXPECT_EQ(state.likeliestClass, 1);
+  EXPECT_NEAR(state.probability, state.occupancy * one / (one + two), 1e-9);
+}
+
 TEST(Queries, rayCastsFindTheFirstOccupiedVoxel) {
   const auto& [tree, plain] = maps();
   std::mt19937 random(5);
