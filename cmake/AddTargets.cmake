@@ -99,13 +99,3 @@ function(mso_add_test name)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT ${ARG_TIMEOUT})
 endfunction()
-
-# mso_add_benchmark(NAME SOURCES ... [DEPENDS ...]): a Google Benchmark program.
-function(mso_add_benchmark name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
-  if(NOT MSO_BUILD_BENCHMARKS)
-    return()
-  endif()
-  add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE mso_settings ${ARG_DEPENDS} benchmark::benchmark benchmark::benchmark_main)
-endfunction()

@@ -87,19 +87,6 @@ TEST(ColoredAStar, equalsTupleDijkstraOnTenThousandRandomGraphs) {
   EXPECT_GT(zeroLength, 500);
 }
 
-TEST(ColoredAStar, equalsTheBestOfAllSimplePaths) {
-  for (unsigned seed = 0; seed < 1000; ++seed) {
-    PlaneGraph plane = randomPlaneGraph(seed, 2 + seed % 8, seed % 19, 3);
-    if (seed % 2) plane.addTolls();
-    const VertexId start = plane.randomVertex(), goal = plane.randomVertex();
-    for (const CostModel& model : allModels(plane.randomOrder())) {
-      const auto expected = oracles::bestOfAllPaths(plane.graph, model, start, goal);
-      ASSERT_EQ(costOf(findColoredPath(plane.graph, start, goal, model)), expected)
-          << "seed " << seed;
-    }
-  }
-}
-
 TEST(ColoredAStar, worksWithEveryNumberOfRanks) {
   for (int ranks = 1; ranks <= kMaxRanks; ++ranks) {
     ColoredGraph graph(kMaxRanks);

@@ -87,26 +87,20 @@ void compare(unsigned seed, const CostModel& model, int changes, bool moving, Ta
   }
 }
 
-void compareAll(bool moving) {
-  Tally tally;
-  unsigned seed = moving ? 1000 : 0;
-  for (int repeat = 0; repeat < 2; ++repeat)
-    for (const CostModel& model : allModels(town(seed).randomOrder())) {
-      compare(seed++, model, 210, moving, tally);  // 24 times
-      if (::testing::Test::HasFatalFailure()) return;
-    }
-  const double ratio = double(tally.incremental) / double(tally.scratch);
-  ::testing::Test::RecordProperty("expansionsRelativeToScratch", std::to_string(ratio));
-  EXPECT_LT(ratio, 0.7);
-  EXPECT_GT(tally.found, 3000u);
-}
-
 }  // namespace
 
-TEST(ColoredReplanner, equalsScratchAfterEachOfFiveThousandChanges) { compareAll(false); }
-
-TEST(ColoredReplanner, equalsScratchAfterEachOfFiveThousandChangesWithAMovingStart) {
-  compareAll(true);
+TEST(ColoredReplanner, equalsScratchAfterEachOfFiveThousandChangesAlsoWithAMovingStart) {
+  Tally tally;
+  unsigned seed = 0;
+  for (const bool moving : {false, true})
+    for (const CostModel& model : allModels(town(seed).randomOrder())) {
+      compare(seed++, model, 210, moving, tally);  // 24 times
+      if (HasFatalFailure()) return;
+    }
+  const double ratio = double(tally.incremental) / double(tally.scratch);
+  RecordProperty("expansionsRelativeToScratch", std::to_string(ratio));
+  EXPECT_LT(ratio, 0.7);
+  EXPECT_GT(tally.found, 3000u);
 }
 
 TEST(ColoredReplanner, savesExpansionsEvenWhenManyEdgesChangeAtOnce) {

@@ -92,25 +92,4 @@ inline std::optional<Tuple> tupleDijkstra(const ColoredGraph& graph, const CostM
   return std::nullopt;
 }
 
-/** The least cost over all simple paths, one by one. */
-inline void enumerate(const ColoredGraph& graph, const CostModel& model, VertexId v, VertexId goal,
-                      const Tuple& cost, std::vector<bool>& used, std::optional<Tuple>& best) {
-  if (v == goal) best = best ? std::min(*best, cost) : cost;
-  used[v] = true;
-  for (const auto& i : graph.incident(v)) {
-    const auto step = edgeCost(graph, model, i.edge, i.neighbor);
-    if (step && !used[i.neighbor])
-      enumerate(graph, model, i.neighbor, goal, sum(cost, *step), used, best);
-  }
-  used[v] = false;
-}
-
-inline std::optional<Tuple> bestOfAllPaths(const ColoredGraph& graph, const CostModel& model,
-                                           VertexId start, VertexId goal) {
-  std::vector<bool> used(graph.vertexIdEnd(), false);
-  std::optional<Tuple> best;
-  enumerate(graph, model, start, goal, zero(model), used, best);
-  return best;
-}
-
 }  // namespace oracles

@@ -25,11 +25,8 @@ struct Making {
   double tileSize = 6.4;
 };
 
-const Making kMakings[] = {{"scans"},
-                           {"upkeep", true},
-                           {"halfLives", false, true},
-                           {"corrections", false, false, true},
-                           {"allTogether", true, true, true, 3.2}};
+const Making kMakings[] = {
+    {"scans"}, {"corrections", false, false, true}, {"allTogether", true, true, true, 3.2}};
 
 SemanticOcTree emptyMapOf(const Making& making) {
   semantic_types::ClassTable classes = numberedClasses(5);

@@ -18,7 +18,7 @@ inline PosedCloud denseScan() {
   PosedCloud scan;
   scan.T_map_sensor = Eigen::Isometry3d::Identity();
   scan.T_map_sensor.translation() << 22.4, 3.2, 3.2;
-  constexpr int kPoints = 60000;
+  constexpr int kPoints = 20000;
   for (int i = 0; i < kPoints; ++i) {  // Fibonacci's sphere
     const double z = 1 - (2 * i + 1.0) / kPoints, r = std::sqrt(1 - z * z), angle = 2.4 * i;
     scan.cloud.points.emplace_back(

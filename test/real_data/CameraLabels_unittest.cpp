@@ -132,7 +132,7 @@ Share labelFlatByColorCamera(double occlusionParallax) {
   labeled_cloud::ScanConverterOptions options;
   options.occlusionParallax = occlusionParallax;
   Share share;
-  const auto frames = readReplica(sharedDataDir() / "replica_apartment_0");
+  const auto frames = readReplica(sharedDataDir() / "replica_apartment_0", 55);
   for (std::size_t f = 0; f < frames.size(); f += 11) {
     mrpt::obs::CObservation3DRangeScan scan;
     scan.hasPoints3D = true;

@@ -9,20 +9,9 @@ ClassTable shippedTable(const std::string& name) {
                                         name);
 }
 
-void disturb(std::vector<ClassId>& classes, double share, int numClasses, std::mt19937& random) {
-  std::uniform_real_distribution<> uniform(0, 1);
-  std::uniform_int_distribution<> other(1, numClasses - 1);
-  for (ClassId& id : classes) {
-    if (id == kNoClass || uniform(random) >= share) continue;
-    const int replacement = other(random);
-    id = static_cast<ClassId>(replacement < id ? replacement : replacement + 1);
-  }
-}
-
 Voxel voxelOf(const SemanticOcTree& map, const LabeledFrame& frame, std::size_t point) {
   const Eigen::Vector3d p = frame.T_map_sensor * frame.cloud.points[point].cast<double>();
-  const auto key = map.coordToKey(p.x(), p.y(), p.z());
-  return {key[0], key[1], key[2]};
+  return map.coordToKey(p.x(), p.y(), p.z());
 }
 
 ClassId CountedLabels::at(const Voxel& voxel, double neighborWeight) const {
@@ -33,10 +22,10 @@ ClassId CountedLabels::at(const Voxel& voxel, double neighborWeight) const {
     for (const auto& [id, count] : found->second) sum[id] += weight * count;
   };
   add(voxel, 1);
-  for (int axis = 0; axis < 3 && neighborWeight > 0; ++axis)
+  for (unsigned axis = 0; axis < 3 && neighborWeight > 0; ++axis)
     for (const int step : {-1, 1}) {
       Voxel neighbor = voxel;
-      neighbor[axis] += step;
+      neighbor[axis] = static_cast<octomap::key_type>(neighbor[axis] + step);
       add(neighbor, neighborWeight);
     }
   const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };

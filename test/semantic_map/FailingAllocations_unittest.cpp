@@ -90,10 +90,8 @@ TEST(FailingAllocations, whileAnObservationIsInsertedLeaveTheMapOrABrokenOne) {
 }
 
 TEST(FailingAllocations, whileTheFilterOrTheAbstractionChangesLeaveBoth) {
-  semantic_map::TAbstractionOptions abstraction;
-  abstraction.relevant = "road: 1";
   CSemanticOctoMap empty(0.5, threeClasses());
-  empty.setAbstraction(abstraction);
+  empty.setAbstraction(someAbstraction());
   std::optional<CSemanticOctoMap> map;
   const int failures = failEachAllocation(
       [&] {

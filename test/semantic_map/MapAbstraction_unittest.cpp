@@ -12,15 +12,6 @@ using semantic_octree::AbstractionOptions;
 
 namespace {
 
-TAbstractionOptions someOptions() {
-  TAbstractionOptions o;
-  o.relevant = "road: 1, tree+wall: 0.5";
-  o.everything = 0.1;
-  o.weights.alpha = 0.01;
-  o.blockSize = 3.2;
-  return o;
-}
-
 TEST(MapAbstraction, comesFromTheIniFile) {
   const mrpt::config::CConfigFileMemory ini(
       "[m]\nsemanticOctoMap_count=1\n"
@@ -46,7 +37,7 @@ TEST(MapAbstraction, comesFromTheIniFile) {
 
 TEST(MapAbstraction, compressedMapIsAMapWithTheSameOptions) {
   CSemanticOctoMap map(0.2, threeClasses());
-  map.setAbstraction(someOptions());
+  map.setAbstraction(someAbstraction());
   map.insertionOptions.scan.maxRange = 4.5;
   fill(map);
   const auto compressed = map.compress();
@@ -57,7 +48,7 @@ TEST(MapAbstraction, compressedMapIsAMapWithTheSameOptions) {
 
 TEST(MapAbstraction, withoutWeightsNoneIsKept) {
   CSemanticOctoMap map(0.2, threeClasses());
-  map.setAbstraction(someOptions());
+  map.setAbstraction(someAbstraction());
   map.setAbstraction(TAbstractionOptions());
   EXPECT_FALSE(hasAbstraction(map.tree()));
   EXPECT_THROW(map.abstraction(), std::logic_error);

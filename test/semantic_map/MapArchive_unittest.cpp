@@ -131,9 +131,7 @@ TEST(MapArchive, everyWayOfCopyingAnswersEveryQueryAlike) {
   const TemporaryFolder folder;
   CSemanticOctoMap map = unusualMap();
   map.genericMapParams.enableSaveAs3DObject = true;
-  semantic_map::TAbstractionOptions abstraction;
-  abstraction.relevant = "road: 1";
-  map.setAbstraction(abstraction);
+  map.setAbstraction(someAbstraction());
   const std::string file = (folder / "map.gz").string();
   {
     mrpt::io::CFileGZOutputStream out(file);

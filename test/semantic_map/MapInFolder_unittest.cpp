@@ -29,14 +29,6 @@ semantic_map::TFolderOptions tilesIn(const std::filesystem::path& folder, bool r
   return options;
 }
 
-semantic_map::TAbstractionOptions someAbstraction() {
-  semantic_map::TAbstractionOptions options;
-  options.relevant = "road: 1, tree: 0.5";
-  options.weights.alpha = 0.02;
-  options.blockSize = 0.8;
-  return options;
-}
-
 CSemanticOctoMap empty() {
   CSemanticOctoMap map(0.1, threeClasses());
   map.likelihoodOptions.decimation = 1;

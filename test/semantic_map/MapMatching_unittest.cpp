@@ -72,33 +72,26 @@ void expectSamePairs(const TMatchingPairList& pairs, const TMatchingPairList& ex
 
 }  // namespace
 
-TEST(MapMatching, pairsPointsAndVoxelsAsAMapOfTheVoxelsCentersDoes) {
+TEST(MapMatching, pairsPointsAndVoxelsAsAMapOfTheVoxelsCentersDoesAlsoSeenFromAbove) {
   const CSemanticOctoMap map = filledMap();
-  TMatchingParams params;
+  const auto points = somePoints();
+  TMatchingParams params, fromAbove;
   params.maxDistForCorrespondence = 0.9f;
   params.maxAngularDistForCorrespondence = 0.05f;
   params.decimation_other_map_points = 3;
   params.offset_other_map_points = 1;
-  TMatchingPairList pairs, expected;
+  fromAbove.maxDistForCorrespondence = 0.3f;
+  TMatchingPairList pairs, expected, above, expectedAbove;
   TMatchingExtraResults extra, expectedExtra;
-  const auto points = somePoints();
+  map.determineMatching2D(&points, CPose2D(kPose), above, fromAbove, extra);
+  voxelCenters(map).determineMatching2D(&points, CPose2D(kPose), expectedAbove, fromAbove,
+                                        expectedExtra);
+  expectSamePairs(above, expectedAbove);
   map.determineMatching3D(&points, kPose, pairs, params, extra);
   voxelCenters(map).determineMatching3D(&points, kPose, expected, params, expectedExtra);
   expectSamePairs(pairs, expected);
   EXPECT_NEAR(extra.correspondencesRatio, expectedExtra.correspondencesRatio, 1e-6);
   EXPECT_NEAR(extra.sumSqrDist, expectedExtra.sumSqrDist, 1e-4);
-}
-
-TEST(MapMatching, seenFromAboveToo) {
-  const CSemanticOctoMap map = filledMap();
-  TMatchingParams params;
-  params.maxDistForCorrespondence = 0.3f;
-  TMatchingPairList pairs, expected;
-  TMatchingExtraResults extra, expectedExtra;
-  const auto points = somePoints();
-  map.determineMatching2D(&points, CPose2D(kPose), pairs, params, extra);
-  voxelCenters(map).determineMatching2D(&points, CPose2D(kPose), expected, params, expectedExtra);
-  expectSamePairs(pairs, expected);
   for (const auto& [x, y] : {std::pair{0.f, 0.f}, {5.f, 1.f}, {-30.f, 2.f}})
     EXPECT_NEAR(map.squareDistanceToClosestCorrespondence(x, y),
                 voxelCenters(map).squareDistanceToClosestCorrespondence(x, y), 1e-3);

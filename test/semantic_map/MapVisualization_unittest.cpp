@@ -79,10 +79,7 @@ TEST(MapVisualization, colorsCanShowEntropy) {
 
 TEST(MapVisualization, theCompressedMapCanBeShownInstead) {
   CSemanticOctoMap map(0.2, threeClasses());
-  semantic_map::TAbstractionOptions abstraction;
-  abstraction.relevant = "road: 1";
-  abstraction.blockSize = 3.2;
-  map.setAbstraction(abstraction);
+  map.setAbstraction(someAbstraction());
   fill(map);
   map.renderingOptions.free = true;
   const auto count = [](const CSemanticOctoMap& m) {

@@ -25,6 +25,14 @@ inline labeled_cloud::CObservationLabeledCloud labeledPoints(
   return observation;
 }
 
+inline semantic_map::TAbstractionOptions someAbstraction() {
+  semantic_map::TAbstractionOptions options;
+  options.relevant = "road: 1, tree: 0.5";
+  options.weights.alpha = 0.02;
+  options.blockSize = 0.8;
+  return options;
+}
+
 /** Points of all three classes around the robot, some seen from two poses. */
 inline void fill(semantic_map::CSemanticOctoMap& map) {
   std::vector<Eigen::Vector3f> points;

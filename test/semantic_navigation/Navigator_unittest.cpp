@@ -248,7 +248,7 @@ TEST(Navigator, InsertsPointsThatHaveTimesAsIfTheyHadBeenSeenAtOnce) {
 TEST(Navigator, DoesWhatItDoesHoweverLongTheMapTakes) {
   Robot quick(someOptions(0.3)), slow(someOptions(0.3));
   quick.afterScan = [&quick] { quick.navigator.mapper(); };  // waits
-  slow.useless = 2000000;
+  slow.useless = 500000;
   for (Robot* robot : {&quick, &slow}) {
     robot->navigator.setGoal({3, 2, 0});
     EXPECT_EQ(robot->drive(), Status::Arrived) << robot->navigator.reason();

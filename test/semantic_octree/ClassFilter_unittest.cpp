@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <octomap/OcTree.h>
 #include <rapidcheck.h>
 #include <semantic_octree/ClassFilter.h>
 #include <nlohmann/json.hpp>
@@ -40,40 +39,6 @@ double largestDeviation(int K, int distinct, const FilterParameters& parameters,
   return largest;
 }
 
-struct Deviation {
-  double meanTotalVariation, rightShare, exactRightShare;
-};
-
-/** Mean distance to the exact filter after 20 labels of a classifier that errs evenly. */
-Deviation deviationAfterTwentyLabels(double accuracy) {
-  constexpr int K = 24, kCells = 4000;
-  std::mt19937 random(1);
-  FilterParameters parameters = wideLimits(accuracy);
-  parameters.hitProbability = 0.7;
-  parameters.falseAlarmProbability = 0.4;
-  const ClassFilter<double> filter(K, parameters);
-  Deviation d{};
-  for (int cell = 0; cell < kCells; ++cell) {
-    const auto truth = static_cast<ClassId>(1 + random() % K);
-    ClassBelief<double> belief = filter.uniform(0);
-    ExactFilter exact(K, parameters);
-    for (int i = 0; i < 20; ++i) {
-      const bool right = random() < accuracy * static_cast<double>(std::mt19937::max());
-      const auto label = right ? truth : static_cast<ClassId>(1 + (truth + random() % (K - 1)) % K);
-      filter.hit(belief, label);
-      exact.hit(label);
-    }
-    const auto p = distributionOf(belief, K), q = exact.distribution();
-    const auto best = [](const auto& v) {
-      return std::max_element(v.begin() + 1, v.end()) - v.begin();
-    };
-    d.meanTotalVariation += totalVariation(p, q) / kCells;
-    d.rightShare += (best(p) == truth) / static_cast<double>(kCells);
-    d.exactRightShare += (best(q) == truth) / static_cast<double>(kCells);
-  }
-  return d;
-}
-
 TEST(ClassFilter, equalsTheExactFilterUntilAFourthClassIsSeen) {
   for (const int K : {1, 2, 3, 4, 24, 254})
     for (int distinct = 1; distinct <= 3; ++distinct) {
@@ -88,35 +53,16 @@ TEST(ClassFilter, inFloatEqualsTheExactFilterOnTheGridToTheLastBit) {
       EXPECT_EQ(largestDeviation<float>(K, 3, parameters), 0) << "K = " << K;
 }
 
-TEST(ClassFilter, onTheGridStatesNearlyWhatItDoesWithoutRounding) {
-  std::mt19937 random(8);
-  double sum = 0, worst = 0;
-  for (const int K : {2, 5, 24}) {
-    const ClassFilter<float> rounded(K, {});
-    const ClassFilter<double> exact(K, {});
-    for (int cell = 0; cell < 300; ++cell) {
-      ClassBelief<float> a = rounded.uniform(0);
-      ClassBelief<double> b = exact.uniform(0);
-      for (const Observation& z : randomStream(random, 100, K, 3)) {
-        apply(rounded, z, a), apply(exact, z, b);
-        const double change = totalVariation(distributionOf(a, K), distributionOf(b, K));
-        sum += change / (3 * 300 * 100), worst = std::max(worst, change);
-      }
-    }
-  }
-  EXPECT_LT(sum, 2e-4);
-  EXPECT_LT(worst, 3e-3);
-}
-
 TEST(ClassFilter, fourthClassLeavesTheOccupancyExact) {
   std::mt19937 random(3);
   const ClassFilter<double> filter(24, wideLimits());
   for (int stream = 0; stream < 200; ++stream) {
     ClassBelief<double> belief = filter.uniform(0);
     ExactFilter exact(24, wideLimits());
-    for (const ClassId id : {3, 9, 4, 3, 9, 3}) filter.hit(belief, id), exact.hit(id);
-    const auto fourth = static_cast<ClassId>(10 + random() % 15);
-    filter.hit(belief, fourth), exact.hit(fourth);
+    std::vector<ClassId> ids = {3, 9, 4, 3, 9, 3};
+    if (stream % 2) ids.push_back(4);
+    ids.push_back(static_cast<ClassId>(10 + random() % 15));
+    for (const ClassId id : ids) filter.hit(belief, id), exact.hit(id);
     EXPECT_EQ(belief.count, 3);
     EXPECT_NEAR(belief.occupancyLogOdds(24), exact.occupancyLogOdds(), 1e-12);
   }
@@ -140,14 +86,6 @@ TEST(ClassFilter, evictsTheLeastLikelyClassAndOnATieTheLargestId) {
   EXPECT_EQ(before.unnamed(24), belief.unnamed(24));
 }
 
-TEST(ClassFilter, afterEvictionStaysNearTheExactFilter) {
-  const Deviation at70 = deviationAfterTwentyLabels(0.7), at50 = deviationAfterTwentyLabels(0.5);
-  EXPECT_LT(at70.meanTotalVariation, 1e-4);
-  EXPECT_GT(at70.rightShare, 0.999);
-  EXPECT_LT(at50.meanTotalVariation, 0.006);
-  EXPECT_GT(at50.rightShare, at50.exactRightShare - 0.004);
-}
-
 TEST(ClassFilter, keepsNamedClassesSortedAndWithinTheirLimits) {
   const FilterParameters parameters;
   const ClassFilter<float> filter(24, parameters);
@@ -169,25 +107,6 @@ TEST(ClassFilter, keepsNamedClassesSortedAndWithinTheirLimits) {
       RC_ASSERT(belief.rest >= lowest);
     }
   }));
-}
-
-TEST(ClassFilter, ofACellWithoutClassesIsOctomapsOccupancyFilter) {
-  const FilterParameters p;
-  const ClassFilter<float> filter(24, p);
-  octomap::OcTree octree(0.1);
-  const auto thatIsStored = [](double logOdds) { return sigmoid(stored(logOdds)); };
-  octree.setProbHit(thatIsStored(std::log(p.hitProbability / p.falseAlarmProbability)));
-  octree.setProbMiss(
-      thatIsStored(std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability))));
-  octree.setClampingThresMin(thatIsStored(logit(p.minOccupancy)));
-  octree.setClampingThresMax(sigmoid(stored(logit(p.maxProbability)) + stored(std::log(24.0))));
-  std::mt19937 random(5);
-  float value = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const bool hit = random() % 3 == 0;
-    value = hit ? filter.occupancyAfterUnlabeledHit(value) : filter.occupancyAfterMiss(value);
-    EXPECT_NEAR(octree.updateNode(0.f, 0.f, 0.f, hit)->getLogOdds(), value, 2e-5 * (i + 1));
-  }
 }
 
 TEST(ClassFilter, withoutRecordTakesTheSameValuesAsOnAUniformRecord) {
@@ -251,16 +170,8 @@ TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
   EXPECT_TRUE(contains(refusal(255, unchanged), "number of classes is 255"));
   const std::pair<void (*)(P&), const char*> faults[] = {
       {[](P& p) { p.accuracy = 0.2; }, "accuracy is 0.2"},
-      {[](P& p) { p.accuracy = 1; }, "accuracy"},
-      {[](P& p) { p.accuracy = NAN; }, "accuracy"},
-      {[](P& p) { p.labelCorrelation = -0.01; }, "label_correlation"},
-      {[](P& p) { p.labelCorrelation = 1.01; }, "label_correlation"},
-      {[](P& p) { p.labelCorrelation = NAN; }, "label_correlation"},
-      {[](P& p) { p.hitProbability = 1; }, "hit_probability"},
       {[](P& p) { p.falseAlarmProbability = 0.6; }, "false_alarm_probability"},
-      {[](P& p) { p.falseAlarmProbability = 0; }, "false_alarm_probability"},
       {[](P& p) { p.minOccupancy = 0.5; }, "min_occupancy"},
-      {[](P& p) { p.minOccupancy = 0; }, "min_occupancy"},
       {[](P& p) { p.maxProbability = 0.5; }, "max_probability"},
       {[](P& p) { p.softLabelFloor = 0; }, "soft_label_floor"},
       {[](P& p) { p.hitProbability = 1 - 0.99e-9; }, "hit_probability"},
@@ -269,10 +180,7 @@ TEST(FilterParameters, thatMakeNoSenseAreRefusedByName) {
   for (const auto& [change, words] : faults)
     EXPECT_TRUE(contains(refusal(5, change), words)) << words << ": " << refusal(5, change);
   EXPECT_EQ(refusal(1, [](P& p) { p.accuracy = 0.5; }), "");
-  void (*const fine[])(P&) = {unchanged,
-                              [](P& p) { p.labelCorrelation = 0; },
-                              [](P& p) { p.labelCorrelation = 1; },
-                              [](P& p) { p.minOccupancy = 1e-9; },
+  void (*const fine[])(P&) = {unchanged, [](P& p) { p.minOccupancy = 1e-9; },
                               [](P& p) { p.hitProbability = 1 - 1e-9; },
                               [](P& p) { p.maxProbability = 1 - 1e-9; }};
   for (const auto& change : fine) EXPECT_EQ(refusal(254, change), "");

@@ -23,9 +23,9 @@ using namespace semantic_octree;
 namespace {
 
 /** Few points: each allocation is made to fail, and all before it are made again. */
-PosedCloud fewPoints(std::mt19937& random) {
+PosedCloud fewPoints(std::mt19937& random, int points = 100) {
   RandomScanOptions options;
-  options.points = 100;
+  options.points = points;
   return randomScan(random, options);
 }
 
@@ -211,7 +211,7 @@ TEST(FailingAllocations, whileTilesComeAndGoLeaveTheMapOrABrokenOne) {
     SemanticOcTree map = mapOf(1, 0, true);
     MapFolder tiles(map, folder.path(), MapFolder::Access::Write, tight);
     std::mt19937 random(10);
-    const PosedCloud scan = fewPoints(random);
+    const PosedCloud scan = fewPoints(random, 40);
     map.insert(scan.cloud, scan.T_map_sensor);
     tiles.save();
     expected = bytesOf(map);

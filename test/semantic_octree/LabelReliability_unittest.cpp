@@ -1,12 +1,10 @@
 // What a scan's labels say of their own reliability, next to urns whose reliability is known.
 #include <gtest/gtest.h>
-#include <map_correction/KeyframeMap.h>
+#include <semantic_octree/ClassFilter.h>
 #include <semantic_octree/LabelReliability.h>
 
 #include <algorithm>
 #include <random>
-
-#include "RandomScans.h"
 
 using namespace semantic_octree;
 
@@ -37,22 +35,6 @@ LabelAgreement agreementOfPairs(double accuracy, double correlation, int K, int 
     agreement.add(labels, labels + 2);
   }
   return agreement;
-}
-
-/** A wall with three points a voxel of 0.1 m, of which this share has a random label. */
-PosedCloud noisyWall(double wrong, int K, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> uniform;
-  PosedCloud scan;
-  for (int i = 0; i < 6000; ++i) {
-    const float y = 6 * uniform(random) - 3, z = 3 * uniform(random);
-    scan.cloud.points.emplace_back(4.1f, y, z);
-    const int truth = y < 0 ? 1 : 2;
-    const bool isWrong = uniform(random) < wrong;
-    scan.cloud.classes.push_back(static_cast<ClassId>(
-        isWrong ? 1 + static_cast<int>(random() % static_cast<unsigned>(K)) : truth));
-  }
-  return scan;
 }
 
 }  // namespace
@@ -128,20 +110,4 @@ TEST(LabelReliability, ofOneClassAndOfPublishedConstantsIsTheParameters) {
   const LabelReliability most{parameters.accuracy, parameters.labelCorrelation};
   EXPECT_TRUE(never.explain({}, 1) == most);
   EXPECT_FALSE(never.explain({}, 24) == most);
-}
-
-TEST(LabelReliability, isKeptWithScansThatMayMove) {
-  constexpr int K = 6;
-  SemanticOcTree map(0.1, numberedClasses(K)), moved = map;
-  const PosedCloud clean = noisyWall(0, K, 8), noisy = noisyWall(0.6, K, 9);
-  const Eigen::Isometry3d there(Eigen::Translation3d(0.2, 0.3, 0)), sensor = clean.T_map_sensor;
-  map.insert(clean.cloud, sensor);
-  map.insert(noisy.cloud, there);
-  KeyframeMap keyframes(moved);
-  keyframes.begin(sensor);
-  keyframes.insert(clean.cloud, sensor);
-  const KeyframeId last = keyframes.begin(sensor);
-  keyframes.insert(noisy.cloud, sensor);
-  keyframes.move({{last, there}});
-  EXPECT_TRUE(moved == map);
 }

@@ -2,6 +2,7 @@
 #include <octomap/OcTree.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "PlainMap.h"
 #include "RandomScans.h"
@@ -20,35 +21,26 @@ InsertionOptions insertion() {
   return options;
 }
 
-/** A pruned tree, an unpruned one and a plain map receive equal scans. */
-struct ThreeMaps {
-  SemanticOcTree pruned{kQueryResolution, numberedClasses(kQueryClasses)}, unpruned = pruned;
+/** A tree and a plain map receive equal scans. */
+struct TwoMaps {
+  SemanticOcTree tree{kQueryResolution, numberedClasses(kQueryClasses)};
   PlainMap plain{kQueryResolution, kQueryClasses};
 
-  explicit ThreeMaps(unsigned seed) {
-    unpruned.setPruning(false);
+  explicit TwoMaps(unsigned seed) {
     std::mt19937 random(seed);
     for (int place = 0; place < 3; ++place) {
       const PosedCloud scan = randomScan(random);
       for (int repeat = 0; repeat < 4; ++repeat) {
-        pruned.insert(scan.cloud, scan.T_map_sensor, insertion());
-        unpruned.insert(scan.cloud, scan.T_map_sensor, insertion());
+        tree.insert(scan.cloud, scan.T_map_sensor, insertion());
         plain.insert(scan, insertion());
       }
     }
   }
 };
 
-const ThreeMaps& maps() {
-  static const ThreeMaps maps(1);
+const TwoMaps& maps() {
+  static const TwoMaps maps(1);
   return maps;
-}
-
-void expectSameState(const CellState& a, const CellState& b) {
-  EXPECT_EQ(a.status, b.status);
-  EXPECT_EQ(a.occupancy, b.occupancy);
-  EXPECT_EQ(a.likeliestClass, b.likeliestClass);
-  EXPECT_NEAR(a.probability, b.probability, 1e-12);
 }
 
 octomap::point3d randomPoint(std::mt19937& random, double spread) {
@@ -88,20 +80,8 @@ std::optional<VoxelId> castPlainRay(const PlainMap& map, const octomap::point3d&
   return std::nullopt;
 }
 
-TEST(Queries, prunedTreeAnswersEveryQueryLikeTheUnpruned) {
-  const auto& [pruned, unpruned, plain] = maps();
-  EXPECT_LT(pruned.size(), unpruned.size());
-  std::mt19937 random(2);
-  for (int i = 0; i < 5000; ++i) {
-    const octomap::point3d p = randomPoint(random, 8);
-    for (const unsigned depth : {0u, 16u, 15u, 14u, 12u})
-      expectSameState(pruned.query(p.x(), p.y(), p.z(), depth),
-                      unpruned.query(p.x(), p.y(), p.z(), depth));
-  }
-}
-
 TEST(Queries, tellTheStateOfEveryVoxel) {
-  const auto& [tree, unpruned, plain] = maps();
+  const auto& [tree, plain] = maps();
   for (const auto& [id, voxel] : plain.voxels()) {
     const CellState state = tree.query(keyOf(id));
     EXPECT_NEAR(state.occupancy, 1 / (1 + std::exp(-voxel.value)), 1e-6);
@@ -120,7 +100,7 @@ TEST(Queries, tellTheStateOfEveryVoxel) {
 }
 
 TEST(Queries, ofPlacesWithoutANodeSayUnknown) {
-  const SemanticOcTree& tree = maps().pruned;
+  const SemanticOcTree& tree = maps().tree;
   for (const double x : {100.0, -8000.0, 1e9, -1e30, HUGE_VAL, std::nan("")}) {
     const CellState state = tree.query(x, 0, 0);
     EXPECT_EQ(state.status, CellState::Status::Unknown) << x;
@@ -136,36 +116,61 @@ TEST(Queries, ofPlacesWithoutANodeSayUnknown) {
 }
 
 TEST(Queries, ofAnInnerNodeMixItsKnownLeavesByVolumeAndTakeTheHighestOccupancy) {
-  const auto& [tree, unpruned, plain] = maps();
+  const auto& [tree, plain] = maps();
   for (const unsigned depth : {15u, 14u, 12u}) {
-    std::map<VoxelId, std::pair<std::vector<double>, float>>
-        cells;  // sum of distributions, maximum
+    struct Cell {
+      float highest = -HUGE_VALF;  ///< log-odds
+      std::vector<double> sum{std::vector<double>(kQueryClasses + 1)}, labeled = sum;
+    };
+    std::map<VoxelId, Cell> cells;
     const int shift = static_cast<int>(16 - depth);
     for (const auto& [id, voxel] : plain.voxels()) {
-      auto& [sum, highest] =
-          cells
-              .emplace(VoxelId{id[0] >> shift, id[1] >> shift, id[2] >> shift},
-                       std::make_pair(std::vector<double>(kQueryClasses + 1), -HUGE_VALF))
-              .first->second;
+      Cell& cell = cells[{id[0] >> shift, id[1] >> shift, id[2] >> shift}];
       const auto p = tree.distribution(*tree.search(keyOf(id)));
-      for (int k = 0; k <= kQueryClasses; ++k) sum[k] += p[k];
-      highest = std::max(highest, voxel.value);
+      for (int k = 0; k <= kQueryClasses; ++k) cell.sum[k] += p[k];
+      for (int k = 1; voxel.record && k <= kQueryClasses; ++k) cell.labeled[k] += p[k];
+      cell.highest = std::max(cell.highest, voxel.value);
     }
-    for (const auto& [cell, expected] : cells) {
-      const VoxelId inside{cell[0] * (1 << shift), cell[1] * (1 << shift), cell[2] * (1 << shift)};
-      const auto node = tree.search(keyOf(inside), depth);
+    for (const auto& [id, cell] : cells) {
+      const auto node = tree.search(
+          keyOf({id[0] * (1 << shift), id[1] * (1 << shift), id[2] * (1 << shift)}), depth);
       ASSERT_NE(node, nullptr);
-      EXPECT_EQ(node->getLogOdds(), expected.second);
+      EXPECT_EQ(node->getLogOdds(), cell.highest);
       const std::vector<double> p = tree.distribution(*node);
-      double total = 0;
-      for (const double x : expected.first) total += x;
-      for (int k = 0; k <= kQueryClasses; ++k) EXPECT_NEAR(p[k], expected.first[k] / total, 1e-9);
+      const double total = std::accumulate(cell.sum.begin(), cell.sum.end(), 0.0),
+                   all = std::accumulate(cell.labeled.begin(), cell.labeled.end(), 0.0);
+      for (int k = 0; k <= kQueryClasses; ++k) EXPECT_NEAR(p[k], cell.sum[k] / total, 1e-9);
+      const CellState state = tree.query(*node);
+      EXPECT_EQ(state.likeliestClass != kNoClass, all > 0);
+      if (all == 0) continue;
+      const double most = *std::max_element(cell.labeled.begin(), cell.labeled.end());
+      EXPECT_NEAR(cell.labeled[state.likeliestClass], most, 1e-9);
+      if (node->isLeaf()) continue;
+      EXPECT_NEAR(state.probability, state.occupancy * most / all, 1e-9);
     }
   }
 }
 
+TEST(Queries, ofAnInnerNodeCountClassesOfLargeLeavesByTheirVolume) {
+  SemanticOcTree tree(1.0, numberedClasses(2));
+  LabeledCloud cloud;
+  for (int i = 0; i < 8; ++i) cloud.points.emplace_back(i % 2 + .5f, i / 2 % 2 + .5f, i / 4 + .5f);
+  cloud.points.emplace_back(2.5f, 0.5f, 0.5f);
+  cloud.classes = {1, 1, 1, 1, 1, 1, 1, 1, 2};
+  InsertionOptions noRays;
+  noRays.carvingMargin = 1e3;
+  tree.insert(cloud, Eigen::Isometry3d::Identity(), noRays);
+  ASSERT_EQ(tree.getNumLeafNodes(), 2u);
+  const auto large = tree.distribution(tree.search(keyOf({0, 0, 0}))),
+             single = tree.distribution(tree.search(keyOf({2, 0, 0})));
+  const double one = 8 * large[1] + single[1], two = 8 * large[2] + single[2];
+  const CellState state = tree.query(keyOf({0, 0, 0}), 14);
+  EXPECT_EQ(state.likeliestClass, 1);
+  EXPECT_NEAR(state.probability, state.occupancy * one / (one + two), 1e-9);
+}
+
 TEST(Queries, rayCastsFindTheFirstOccupiedVoxel) {
-  const auto& [tree, unpruned, plain] = maps();
+  const auto& [tree, plain] = maps();
   std::mt19937 random(5);
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -185,7 +190,7 @@ TEST(Queries, rayCastsFindTheFirstOccupiedVoxel) {
 }
 
 TEST(Queries, rayCastsFromOutsideOrToTheBorderFindNothingAndPrintNothing) {
-  const SemanticOcTree& tree = maps().pruned;
+  const SemanticOcTree& tree = maps().tree;
   testing::internal::CaptureStderr();
   EXPECT_FALSE(tree.castRay({1e6f, 0, 0}, {-1, 0, 0}));
   EXPECT_FALSE(tree.castRay({NAN, 0, 0}, {-1, 0, 0}));

@@ -55,25 +55,3 @@ PosedCloud randomScan(std::mt19937& random, const RandomScanOptions& o) {
   }
   return scan;
 }
-
-PosedCloud streetScan(std::mt19937& random, const Eigen::Vector3d& place, int rings, int columns) {
-  PosedCloud scan;
-  scan.T_map_sensor = randomPose(random, 0.5);
-  const Eigen::Vector3d sensor = scan.T_map_sensor.translation();
-  scan.T_map_sensor.translation() += place;
-  for (int ring = 0; ring < rings; ++ring)
-    for (int column = 0; column < columns; ++column) {
-      const double elevation = -0.4 + 0.6 * ring / rings,
-                   azimuth = column * 2 * M_PI / columns + 0.001;
-      const Eigen::Vector3d beam(std::cos(elevation) * std::cos(azimuth),
-                                 std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-      double range = 40;
-      if (beam.z() < 0) range = std::min(range, (-1.73 - sensor.z()) / beam.z());
-      if (beam.y() != 0)
-        range = std::min(range, ((beam.y() > 0 ? 6.01 : -7.02) - sensor.y()) / beam.y());
-      const Eigen::Vector3d point = place + sensor + beam * (range + between(random, -0.02, 0.02));
-      scan.cloud.points.push_back((scan.T_map_sensor.inverse() * point).cast<float>());
-      scan.cloud.classes.push_back(beam.z() < 0 ? 1 : 2);
-    }
-  return scan;
-}

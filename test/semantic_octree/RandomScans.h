@@ -18,8 +18,5 @@ PosedCloud randomScan(std::mt19937& random, const RandomScanOptions& options = {
 
 Eigen::Isometry3d randomPose(std::mt19937& random, double spread);
 
-/** A LiDAR between a ground plane and walls: grazing beams, most of them long. Classes 1 and 2. */
-PosedCloud streetScan(std::mt19937& random, const Eigen::Vector3d& place, int rings, int columns);
-
 /** Uniform in [low, high). */
 double between(std::mt19937& random, double low, double high);

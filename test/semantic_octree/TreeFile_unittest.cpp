@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <cmath>
-#include <cstring>
 #include <sstream>
 
 #include "CraftedTreeFile.h"
@@ -169,24 +168,6 @@ TEST(TreeFile, withAnyByteAlteredIsRefused) {
       ASSERT_THROW(readTree(in), std::runtime_error) << "byte " << i;
       bytes[i] = static_cast<char>(bytes[i] ^ flip);
     }
-}
-
-TEST(TreeFile, withBlocksExchangedIsRefused) {
-  const TemporaryFolder folder;
-  const std::string bytes = fileOf(someTree(false, 6, 0.1));
-  constexpr std::size_t begin = 12, block = 65536 + 8;
-  ASSERT_GT(bytes.size(), begin + 2 * block);
-  // Blocks are as full as whole values allow; find their lengths.
-  std::uint32_t first = 0, second = 0;
-  std::memcpy(&first, &bytes[begin], 4);
-  std::memcpy(&second, &bytes[begin + 8 + first], 4);
-  const std::string a = bytes.substr(begin, 8 + first),
-                    b = bytes.substr(begin + 8 + first, 8 + second);
-  const std::string rest = bytes.substr(begin + a.size() + b.size());
-  EXPECT_EQ(loadError(folder, bytes.substr(0, begin) + a + b + rest), "");
-  EXPECT_NE(loadError(folder, bytes.substr(0, begin) + b + a + rest), "");
-  EXPECT_NE(loadError(folder, bytes.substr(0, begin) + a + rest), "");
-  EXPECT_NE(loadError(folder, bytes.substr(0, begin) + a + b + b + rest), "");
 }
 
 TEST(TreeFile, thatCannotBeWrittenLeavesTheOldOneAlone) {

@@ -3,7 +3,6 @@
 #include <semantic_octree/ClassFilter.h>
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 
 #include "ExactFilter.h"
@@ -102,43 +101,6 @@ TEST(Votes, ofTheOnlyClassAreItsHit) {
   ClassBelief<float> labeled = filter.uniform(0);
   filter.hit(labeled, 1);
   EXPECT_TRUE(after(filter, {{1, 5}}) == labeled);
-}
-
-TEST(Votes, doNotDependOnTheOrderOfPoints) {
-  std::mt19937 random(4);
-  for (int round = 0; round < 5; ++round) {
-    const PosedCloud scan = randomScan(random);
-    std::vector<std::size_t> order(scan.cloud.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::shuffle(order.begin(), order.end(), random);
-    LabeledCloud shuffled;
-    for (const std::size_t i : order) {
-      shuffled.points.push_back(scan.cloud.points[i]);
-      shuffled.classes.push_back(scan.cloud.classes[i]);
-    }
-    SemanticOcTree a(0.5, numberedClasses(5)), b = a;
-    a.insert(scan.cloud, scan.T_map_sensor);
-    b.insert(shuffled, scan.T_map_sensor);
-    EXPECT_TRUE(a == b);
-  }
-}
-
-TEST(Votes, ofAScanAreAllLabelsThatEndInAVoxel) {
-  const auto beliefAfter = [](const Votes& votes) {
-    LabeledCloud cloud;
-    for (const auto& [id, count] : votes)
-      for (int i = 0; i < count; ++i) {
-        cloud.points.emplace_back(5.1f + 0.01f * static_cast<float>(i), 0.5f, 0.5f);
-        cloud.classes.push_back(static_cast<ClassId>(id));
-      }
-    SemanticOcTree map(1.0, numberedClasses(24));
-    map.insert(cloud, Eigen::Isometry3d::Identity());
-    return map.belief(map.search(map.coordToKey(5.5, 0.5, 0.5)));
-  };
-  const ClassFilter<float> filter(24, {});
-  for (const Votes& votes : {Votes{{3, 1}}, Votes{{3, 2}}, Votes{{3, 80}}, Votes{{3, 1}, {9, 1}},
-                             Votes{{3, 5}, {9, 1}}, Votes{{1, 1}, {3, 5}, {9, 7}, {24, 2}}})
-    EXPECT_TRUE(beliefAfter(votes) == after(filter, votes)) << votes.size();
 }
 
 /** Compares the filter with the exact one after each of some random soft labels of K <= 3 classes.

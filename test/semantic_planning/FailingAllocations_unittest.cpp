@@ -78,13 +78,6 @@ TEST_F(FailingPlans, andWhatMakesOneLeavesTheMap) {
             3);
 }
 
-TEST_F(FailingPlans, areNotThoseThatWereRefused) {
-  SemanticPlanner p(map(), order, options);
-  EXPECT_THROW(p.plan({NAN, 0, 0}, goal), std::invalid_argument);
-  EXPECT_THROW(p.replan(start), std::logic_error);  // nothing was planned
-  EXPECT_TRUE(p.plan(start, goal).found());
-}
-
 TEST_F(FailingPlans, areThoseThatTheirUserBreaksOff) {
   options.cancelled = []() -> bool { throw std::runtime_error("enough"); };
   SemanticPlanner p(map(), order, options);

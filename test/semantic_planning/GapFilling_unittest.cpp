@@ -28,46 +28,34 @@ class SlitFloor : public testing::Test {
 
 }  // namespace
 
-TEST_F(SlitFloor, aNarrowSlitGetsTheClassOfItsNearerBorder) {
-  paint(0.8);
-  const Ground g = ground(1, 1);
-  const auto nearRoad = g.find(0, 0.1), nearGrass = g.find(0, 0.7);
-  ASSERT_TRUE(nearRoad && nearGrass);
-  EXPECT_TRUE(nearRoad->surface.filled);
-  EXPECT_EQ(nearRoad->surface.classId, PaintedWorld::Road);
-  EXPECT_EQ(nearGrass->surface.classId, PaintedWorld::Grass);
-  EXPECT_TRUE(g.connected(*g.find(0, -1), *g.find(0, 2)));
-}
-
-TEST_F(SlitFloor, aWiderSlitBetweenDifferentRanksIsUnknownGround) {
-  paint(1.4);
-  const auto middle = ground(1, 2).find(0, 0.7);
-  ASSERT_TRUE(middle);
-  EXPECT_TRUE(middle->surface.filled);
-  EXPECT_EQ(middle->surface.classId, semantic_types::kNoClass);
-}
-
-TEST_F(SlitFloor, aWiderSlitBetweenEqualRanksHasTheClassOfItsNearerBorder) {
-  paint(1.4);
-  const Ground g = ground(1, 2, {5, {{0}, {1, 2, 3, 4}}});
-  const auto nearRoad = g.find(0, 0.3), nearGrass = g.find(0, 1.1);
-  ASSERT_TRUE(nearRoad && nearGrass);
-  EXPECT_EQ(nearRoad->surface.classId, PaintedWorld::Road);
-  EXPECT_EQ(nearGrass->surface.classId, PaintedWorld::Grass);
-}
-
-TEST_F(SlitFloor, aWiderSlitBetweenForbiddenClassesIsUnknownGround) {
-  paint(1.4);
-  const auto middle = ground(1, 2, {5, {{3, 4}, {0}}}).find(0, 0.7);
-  ASSERT_TRUE(middle);
-  EXPECT_EQ(middle->surface.classId, semantic_types::kNoClass);
-}
-
-TEST_F(SlitFloor, aSlitWiderThanAllGapsStaysOpen) {
-  paint(2.4);
-  const Ground g = ground(1, 2);
-  EXPECT_FALSE(g.find(0, 1.2).has_value());
-  EXPECT_FALSE(g.connected(*g.find(0, -1), *g.find(0, 4)));
+TEST_F(SlitFloor, isFilledWithTheNearerBordersClassOrUnknownGroundOrStaysOpen) {
+  const colored_graph::ClassOrder usual{5, {{1}, {2}, {3, 4}, {0}}}, alike{5, {{0}, {1, 2, 3, 4}}},
+      forbidden{5, {{3, 4}, {0}}};
+  constexpr ClassId kUnknown = semantic_types::kNoClass;
+  const struct {
+    const char* name;
+    double width;
+    const colored_graph::ClassOrder& order;
+    std::vector<ClassId> classes;  ///< near the road, and near the grass; none: open
+  } cases[] = {{"narrow", 0.8, usual, {PaintedWorld::Road, PaintedWorld::Grass}},
+               {"wider, of ranks that differ", 1.4, usual, {kUnknown, kUnknown}},
+               {"wider, of one rank", 1.4, alike, {PaintedWorld::Road, PaintedWorld::Grass}},
+               {"wider, of forbidden classes", 1.4, forbidden, {kUnknown, kUnknown}},
+               {"wider than all gaps", 2.4, usual, {}}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    world = PaintedWorld();
+    paint(c.width);
+    const Ground g = ground(1, 2, c.order);
+    std::vector<ClassId> found;
+    for (const double y : {0.1, c.width - 0.1})
+      if (const auto at = g.find(0, y)) {
+        EXPECT_TRUE(at->surface.filled);
+        found.push_back(at->surface.classId);
+      }
+    EXPECT_EQ(found, c.classes);
+    EXPECT_EQ(g.connected(*g.find(0, -1), *g.find(0, 4)), !c.classes.empty());
+  }
 }
 
 TEST_F(SlitFloor, aWideFillLeavesNoFloorAboveANarrowOne) {

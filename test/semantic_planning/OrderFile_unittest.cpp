@@ -61,10 +61,3 @@ TEST_F(OrderFile, ratesAreOfAllRanksButTheBest) {
   EXPECT_TRUE(contains(error("rates: [1, 2, much]"), "rates"));
   EXPECT_TRUE(contains(error("rates: 4"), "not a list"));
 }
-
-TEST_F(OrderFile, thoseOfTheRepositoryLoad) {
-  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
-  semantic_types::ClassTable kitti;
-  for (const char* name : {"road", "parking", "sidewalk", "terrain"}) kitti.add(name, {});
-  EXPECT_EQ(loadClassOrder(config / "orders/semantic_kitti.yaml", kitti).ranks(), 5);
-}

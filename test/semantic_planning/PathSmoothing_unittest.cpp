@@ -17,12 +17,6 @@ class PathSmoothing : public PathTest {
       appendCurve(checker().trace(leg.curve, leg.from), after);
     return after;
   }
-  static int steeringChanges(const std::vector<PathPoint>& path) {
-    int changes = 0;
-    for (std::size_t i = 2; i < path.size(); ++i)
-      changes += std::abs(path[i].curvature - path[i - 1].curvature) > 1e-6;
-    return changes;
-  }
 };
 
 const std::vector<ReedsSheppCurve::Segment> kWinding = {{3, 0}, {0.5, 1}, {2, 0}, {0.7, -1},

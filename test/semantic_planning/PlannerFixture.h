@@ -5,8 +5,8 @@
 #include <semantic_planning/planner/OrderFile.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 
+#include <array>
 #include <set>
-#include <vector>
 
 #include "PaintedWorld.h"
 #include "PathChecker.h"
@@ -44,9 +44,27 @@ class PlannerTest : public testing::Test {
   static double meters(const PlanResult& plan, PaintedWorld::Class id) {
     return plan.lengthPerClass[id];
   }
-  /** x, y, heading and height of a roadmap's vertices. */
-  static std::set<std::vector<double>> posesOf(const semantic_planning::Roadmap& roadmap) {
-    std::set<std::vector<double>> poses;
+  /** Of the part of a path whose points are of a kind. */
+  template <typename IsMeant>
+  static double meters(const std::vector<semantic_planning::PathPoint>& path,
+                       const IsMeant& isMeant) {
+    double meters = 0;
+    for (std::size_t i = 1; i < path.size(); ++i)
+      if (isMeant(path[i])) meters += path[i].arcLength - path[i - 1].arcLength;
+    return meters;
+  }
+  static double metersBackwards(const PlanResult& plan) {
+    return meters(plan.path, [](const auto& p) { return !p.forward; });
+  }
+  static int steeringChanges(const std::vector<semantic_planning::PathPoint>& path) {
+    int changes = 0;
+    for (std::size_t i = 2; i < path.size(); ++i)
+      changes += std::abs(path[i].curvature - path[i - 1].curvature) > 1e-6;
+    return changes;
+  }
+  /** Where its vertices are: x, y, heading, z. */
+  static std::set<std::array<double, 4>> posesOf(const semantic_planning::Roadmap& roadmap) {
+    std::set<std::array<double, 4>> poses;
     for (colored_graph::VertexId v = 0; v < roadmap.graph().vertexIdEnd(); ++v)
       if (roadmap.graph().containsVertex(v)) {
         const semantic_planning::GroundPose& g = roadmap.pose(v);

@@ -26,19 +26,10 @@ class PoseSearchTest : public PathTest {
   }
   /** Meters with a wheel off the road, by geometry alone; a voxel's width is for nobody to tell. */
   double metersOnGrass(const std::vector<PathPoint>& path) {
-    double meters = 0;
-    for (std::size_t i = 1; i < path.size(); ++i) {
-      const double aside = options.vehicle.wheelTrack / 2 * std::abs(std::cos(path[i].heading));
-      if (std::abs(path[i].y) + aside > kHalfWidth + world.map().getResolution())
-        meters += path[i].arcLength - path[i - 1].arcLength;
-    }
-    return meters;
-  }
-  static double metersOf(ClassId id, const std::vector<PathPoint>& path) {
-    double meters = 0;
-    for (std::size_t i = 1; i < path.size(); ++i)
-      if (path[i].classId == id) meters += path[i].arcLength - path[i - 1].arcLength;
-    return meters;
+    return meters(path, [&](const PathPoint& p) {
+      const double aside = options.vehicle.wheelTrack / 2 * std::abs(std::cos(p.heading));
+      return std::abs(p.y) + aside > kHalfWidth + world.map().getResolution();
+    });
   }
 };
 

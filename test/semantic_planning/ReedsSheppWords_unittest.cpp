@@ -10,6 +10,7 @@
 #include "ReedsSheppOracle.h"
 
 using mrpt::math::TPose2D;
+using semantic_planning::CurvePoint;
 using semantic_planning::ReedsShepp;
 using semantic_planning::ReedsSheppCurve;
 
@@ -131,13 +132,17 @@ TEST(ReedsSheppWords, areNowhereLongerThanThoseOfOmpl) {
   }
 }
 
-TEST(ReedsSheppWords, thatOnlyGoForwardAreNowhereLongerThanThoseOfDubins) {
+TEST(ReedsSheppWords, thatOnlyGoForwardLeadToTheGoalAndAreNowhereLongerThanThoseOfDubins) {
   for (const double radius : {0.4, 1.0, 5.0}) {
     const ReedsShepp shepp(radius);
     const ReedsSheppOracle ompl(radius);
-    for (const auto& [a, b] : randomPairs(2000, radius))
-      ASSERT_LE(shepp.connectForward(a, b).length(), ompl.forwardDistance(a, b) + 1e-6 * radius)
+    for (const auto& [a, b] : randomPairs(2000, radius)) {
+      const ReedsSheppCurve curve = shepp.connectForward(a, b);
+      ASSERT_LE(curve.length(), ompl.forwardDistance(a, b) + 1e-6 * radius)
           << radius << ": " << a << " to " << b;
+      ASSERT_LT(gap(endOf(curve, a, radius), b), 1e-7) << radius << ": " << a << " to " << b;
+      for (const auto& segment : curve.segments()) ASSERT_GE(segment.length, 0);
+    }
   }
 }
 
@@ -152,6 +157,7 @@ TEST(ReedsSheppWords, leadToTheGoalInTheLengthOfTheDistance) {
         ASSERT_LT(gap(endOf(curve, a, radius), b), 1e-9) << radius << ": " << a << " to " << b;
         ASSERT_DOUBLE_EQ(curve.length(), sum);
         ASSERT_NEAR(sum, shepp.distance(a, b), 1e-9);
+        ASSERT_LE(shepp.lowerBound(a, b), sum + 1e-9);
       }
   }
 }
@@ -197,4 +203,41 @@ TEST(ReedsSheppWords, haveNoMoreSegmentsThanNeeded) {
   EXPECT_EQ(segmentsTo({-4, 0, 0}), 1);
   EXPECT_EQ(segmentsTo({4, 1, M_PI / 2}), 2);
   EXPECT_EQ(segmentsTo({std::sin(1), 1 - std::cos(1), 1}), 1);
+}
+
+TEST(ReedsShepp, theReversedCurveGoesThroughTheSamePosesInTheOtherGear) {
+  const ReedsShepp shepp(1.2);
+  for (const auto& [a, b] : randomPairs(25, 1.2)) {
+    const ReedsSheppCurve curve = shepp.connect(a, b), back = curve.reversed();
+    EXPECT_NEAR(back.length(), curve.length(), 1e-9);
+    for (double t = 0.013; t < 1; t += 0.1) {
+      const CurvePoint p = curve.at(t * curve.length()), q = back.at((1 - t) * curve.length());
+      EXPECT_LT(gap(p.pose, q.pose), 1e-6);
+      EXPECT_NE(p.forward, q.forward);
+      EXPECT_DOUBLE_EQ(p.curvature, q.curvature);
+    }
+  }
+}
+
+TEST(ReedsShepp, poseAndCurvatureAgreeAlongTheCurve) {
+  const ReedsShepp shepp(2);
+  Draws draw;
+  for (int i = 0; i < 200; ++i) {
+    const auto [a, b] = draw.pair(8);
+    const ReedsSheppCurve curve = shepp.connect(a, b);
+    const double h = 1e-5;
+    for (double s = 0.0137; s + h < curve.length(); s += 0.31) {
+      const CurvePoint p = curve.at(s), q = curve.at(s + h);
+      if (p.forward != q.forward || p.curvature != q.curvature) continue;
+      const double gear = p.forward ? 1 : -1;
+      EXPECT_NEAR((q.pose.x - p.pose.x) / h, gear * std::cos(p.pose.phi), 1e-4);
+      EXPECT_NEAR((q.pose.y - p.pose.y) / h, gear * std::sin(p.pose.phi), 1e-4);
+      EXPECT_NEAR(std::remainder(q.pose.phi - p.pose.phi, 2 * M_PI) / h, gear * p.curvature, 1e-4);
+    }
+  }
+}
+
+TEST(ReedsShepp, refusesARadiusThatIsNotPositive) {
+  for (const double radius : {0.0, -1.0, double(NAN), double(INFINITY)})
+    EXPECT_THROW(ReedsShepp{radius}, std::invalid_argument) << radius;
 }

@@ -22,10 +22,7 @@ class RelaxedSearch : public PlannerTest {
   }
   std::vector<PathPoint> guide() { return search().path; }
   static double meters(const std::vector<PathPoint>& path, PaintedWorld::Class id) {
-    double meters = 0;
-    for (std::size_t i = 1; i < path.size(); ++i)
-      if (path[i].classId == id) meters += path[i].arcLength - path[i - 1].arcLength;
-    return meters;
+    return PlannerTest::meters(path, [id](const PathPoint& p) { return p.classId == id; });
   }
 };
 

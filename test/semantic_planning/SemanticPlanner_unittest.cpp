@@ -71,15 +71,6 @@ TEST_F(PlannerTest, anotherSearchOfTheGraphTakesThePlaceOfTheUsualOne) {
   EXPECT_EQ(searches, 2);
 }
 
-TEST_F(PlannerTest, keepsToTheRoadAroundTheCorner) {
-  paintCorner();
-  options.roadmap.vertices = 1000;
-  const PlanResult result = plan();
-  expectDrivable(result);
-  EXPECT_EQ(meters(result, PaintedWorld::Grass), 0);
-  EXPECT_GT(result.length, 35);
-}
-
 TEST_F(PlannerTest, takesTheStraightLineWhereClassesAreEqual) {
   paintCorner();
   order = {5, {{1, 2}, {4}, {0}}};
@@ -120,20 +111,6 @@ TEST_F(PlannerTest, leavesAsPublishedHaveOnePointInTheirMiddleAtMost) {
   }
   EXPECT_GT(inMiddles, 50u);
   EXPECT_EQ(inMiddles, seen.size());
-}
-
-TEST_F(PlannerTest, goesThroughTheGapInAWall) {
-  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
-  world.box(-1, -0.6, -15, 15, 0, 2, PaintedWorld::Wall);
-  PaintedWorld gap;  // the same with a gap of 2.4 m
-  gap.floor(-15, 15, -15, 15, PaintedWorld::Grass);
-  gap.box(-1, -0.6, -15, 3, 0, 2, PaintedWorld::Wall);
-  gap.box(-1, -0.6, 5.4, 15, 0, 2, PaintedWorld::Wall);
-  start = {-10, -10, 0};
-  goal = {10, -10, M_PI};
-  EXPECT_EQ(plan().status, PlanStatus::NotConnected);
-  world = std::move(gap);
-  expectDrivable(plan());
 }
 
 TEST_F(PlannerTest, drivesBelowABridgeAndOverIt) {

@@ -67,9 +67,3 @@ TEST_F(VehicleFile, isReadStrictly) {
   EXPECT_TRUE(contains(error("height: 1\nfootprint: [[0, 0], [2, 0], [1, 0.5], [0, 2]]"),
                        "vehicle.yaml:2: footprint is not convex at (1, 0.5)"));
 }
-
-TEST_F(VehicleFile, thoseOfTheRepositoryLoad) {
-  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
-  EXPECT_GT(loadVehicle(config / "vehicles/car.yaml").turningRadius, 1);
-  EXPECT_GT(loadVehicle(config / "vehicles/robot.yaml").turningRadius, 1);
-}

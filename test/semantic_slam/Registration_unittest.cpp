@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <semantic_slam/Reference.h>
 #include <semantic_slam/Registration.h>
 #include <semantic_slam/Slam.h>
 #include <semantic_types/ClassTable.h>

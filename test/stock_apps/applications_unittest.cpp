@@ -4,9 +4,6 @@
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_types/ClassTable.h>
 
-#include <cmath>
-#include <regex>
-
 #include "StockApps.h"
 
 namespace {
@@ -63,14 +60,12 @@ class RbpfSlam : public StockApps {
     SKIP_WITHOUT_APP("rbpf-slam");
     SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
   }
-  ProgramRun slam() const {
-    return run("rbpf-slam config/stock-apps/rbpf-slam.ini '" + shortRawlog(kLaserRawlog, 60) + "'",
-               Plugin::Preloaded);
-  }
 };
 
 TEST_F(RbpfSlam, eachParticleBuildsWeighsAndCopiesASemanticOctree) {
-  const ProgramRun slammed = slam();
+  const ProgramRun slammed =
+      run("rbpf-slam config/stock-apps/rbpf-slam.ini '" + shortRawlog(kLaserRawlog, 60) + "'",
+          Plugin::Preloaded);
   ASSERT_EQ(slammed.status, 0) << slammed.output;
   const auto map = mapIn("rbpf-slam-output");
   ASSERT_TRUE(map) << slammed.output;
@@ -81,52 +76,12 @@ TEST_F(RbpfSlam, eachParticleBuildsWeighsAndCopiesASemanticOctree) {
   EXPECT_GT(check.occupiedAtPoints, 0.98);
 }
 
-class PfLocalization : public StockApps {
- protected:
-  void SetUp() override {
-    SKIP_WITHOUT_APP("pf-localization");
-    SKIP_WITHOUT("/usr/share/mrpt/datasets/localization_demo.simplemap.gz", "mrpt-common");
-  }
-  ProgramRun localize() const {
-    return run("pf-localization config/stock-apps/pf-localization.ini", Plugin::Preloaded);
-  }
-};
-
-struct Estimate {
-  double x = NAN, y = NAN, degrees = NAN;
-};
-
-/** The last one that the application told. */
-Estimate lastEstimate(const std::string& output) {
-  static const std::regex pattern(R"(PDF estimation: \(([-\d.]+),([-\d.]+),([-\d.]+)deg\))");
-  Estimate last;
-  for (std::sregex_iterator it(output.begin(), output.end(), pattern), end; it != end; ++it)
-    last = {std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])};
-  return last;
-}
-
-/** The end of the path, which MRPT's own tests know: (15.904, -10.010) m, 4.93 degrees. */
-double distanceToEnd(const Estimate& e) { return std::hypot(e.x - 15.904, e.y + 10.010); }
-
-TEST_F(PfLocalization, theParticlesFindTheRobotInASemanticOctreeOfARealBuilding) {
-  const ProgramRun localized = localize();
-  ASSERT_EQ(localized.status, 0) << localized.output;
-  ASSERT_TRUE(mapIn("pf-localization-output_000_0005000"));
-  const Estimate end = lastEstimate(localized.output);
-  EXPECT_LT(distanceToEnd(end), 0.3);
-  EXPECT_NEAR(end.degrees, 4.93, 2);
-}
-
 class Observations2Map : public StockApps {
  protected:
   void SetUp() override {
     SKIP_WITHOUT_APP("observations2map");
     ASSERT_TRUE(villageFrames(2).saveToFile((folder / "village.simplemap").string()));
     std::filesystem::create_directory(folder / "out");
-  }
-  ProgramRun make() const {
-    return run("observations2map config/stock-apps/observations2map.ini village.simplemap out/map",
-               Plugin::Preloaded);
   }
 };
 
@@ -157,18 +112,16 @@ double shareOfLabelsIn(const semantic_octree::SemanticOcTree& map) {
   return all > 1000 ? same / all : 0;
 }
 
-TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBit) {
-  const ProgramRun made = make();
+TEST_F(Observations2Map, theMapIsThatOfTheLibraryBitForBitAndInTheScene) {
+  const ProgramRun made =
+      run("observations2map config/stock-apps/observations2map.ini village.simplemap out/map",
+          Plugin::Preloaded);
   ASSERT_EQ(made.status, 0) << made.output;
   const auto map = mapIn("out");
   ASSERT_TRUE(map) << made.output;
   EXPECT_TRUE(*map == expectedMap());
   EXPECT_GT(map->getNumLeafNodes(), 10000u);
   EXPECT_GT(shareOfLabelsIn(*map), 0.9);
-}
-
-TEST_F(Observations2Map, theSceneShowsTheClasses) {
-  ASSERT_EQ(make().status, 0);
   mrpt_compat::Scene scene;
   ASSERT_TRUE(
       scene.loadFromFile((folder / "out/map_semantic_map__CSemanticOctoMap_00.3Dscene").string()));
@@ -183,7 +136,9 @@ using labeled_cloud::CObservationLabeledCloud;
 class RawlogEdit : public StockApps {
  protected:
   void SetUp() override { SKIP_WITHOUT_APP("rawlog-edit"); }
-  ProgramRun edit(const std::string& arguments) const { return run("rawlog-edit " + arguments); }
+  ProgramRun edit(const std::string& arguments) const {
+    return run("rawlog-edit -p " + kPlugin + ' ' + arguments);
+  }
 };
 
 std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const std::filesystem::path& file) {
@@ -194,28 +149,24 @@ std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const std::filesystem::
   return all;
 }
 
-const char* const kVillage = "rawlog-samples/village.rawlog";
+const std::string kVillage = "rawlog-samples/village.rawlog";
 
 }  // namespace
 
-TEST_F(RawlogEdit, listsRawlogsWithLabeledClouds) {
-  const ProgramRun listed = edit(std::string("-p ") + kPlugin + " --info -i " + kVillage);
+TEST_F(RawlogEdit, listsRawlogsWithLabeledCloudsAndDescribesThem) {
+  const ProgramRun listed = edit("--info -i " + kVillage),
+                   described = edit("--describe -i " + kVillage);
   EXPECT_EQ(listed.status, 0);
   EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 72"));
   EXPECT_TRUE(contains(listed.output, "LIDAR /     24"));
-}
-
-TEST_F(RawlogEdit, describesTheClouds) {
-  const ProgramRun cut = edit(std::string("-p ") + kPlugin + " --describe -i " + kVillage);
-  EXPECT_TRUE(contains(cut.output, "labeled_cloud::CObservationLabeledCloud"));
-  EXPECT_TRUE(contains(cut.output, "road: ")) << cut.output.substr(0, 3000);
+  EXPECT_TRUE(contains(described.output, "labeled_cloud::CObservationLabeledCloud"));
+  EXPECT_TRUE(contains(described.output, "road: ")) << described.output.substr(0, 3000);
 }
 
 TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
   if (!kRawlogEditDrops) GTEST_SKIP() << "rawlog-edit of this MRPT drops nothing";
   const ProgramRun cut =
-      edit(std::string("-p ") + kPlugin + " --cut --from-index 3 --to-index 8 -i " + kVillage +
-           " -o cut.rawlog");
+      edit("--cut --from-index 3 --to-index 8 -i " + kVillage + " -o cut.rawlog");
   ASSERT_EQ(cut.status, 0) << cut.output;
   const auto before = observationsOf(folder / kVillage),
              after = observationsOf(folder / "cut.rawlog");
@@ -233,8 +184,7 @@ TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
 
 TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
   if (!kRawlogEditDrops) GTEST_SKIP() << "rawlog-edit of this MRPT drops nothing";
-  const ProgramRun kept = edit(std::string("-p ") + kPlugin + " --keep-label LIDAR -i " + kVillage +
-                               " -o lidar.rawlog");
+  const ProgramRun kept = edit("--keep-label LIDAR -i " + kVillage + " -o lidar.rawlog");
   ASSERT_EQ(kept.status, 0) << kept.output;
   const auto clouds = observationsOf(folder / "lidar.rawlog");
   EXPECT_EQ(clouds.size(), 24u);
@@ -243,7 +193,7 @@ TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
 }
 
 TEST_F(RawlogEdit, withoutThePluginTheRawlogEndsAtTheFirstCloudAndTheStatusIsZero) {
-  const ProgramRun listed = edit(std::string("--info -i ") + kVillage);
+  const ProgramRun listed = run("rawlog-edit --info -i " + kVillage);
   EXPECT_EQ(listed.status, 0);
   EXPECT_TRUE(contains(listed.output, "which is not registered"));
   EXPECT_TRUE(contains(listed.output, "Overall number of objects         : 2"));

@@ -4,6 +4,7 @@
 #include <semantic_types/ClassTable.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include <cmath>
 #include <regex>
 
 #include "StockApps.h"
@@ -148,15 +149,24 @@ std::string commandsOf(const std::filesystem::path& page) {
 
 }  // namespace
 
-TEST_F(StockApps, theCommandsOfTheirPageWorkOneAfterTheOther) {
+TEST_F(StockApps, theCommandsOfTheirPageWorkOneAfterTheOtherAndParticlesFindTheRobot) {
   SKIP_WITHOUT_APP("icp-slam");
   SKIP_WITHOUT(std::string("/usr/share/mrpt/datasets/") + kLaserRawlog, "mrpt-common");
+  SKIP_WITHOUT("/usr/share/mrpt/datasets/localization_demo.simplemap.gz", "mrpt-common");
   std::filesystem::create_directory(folder / "build");
   std::filesystem::create_directory_symlink(MSO_LIB_DIR, folder / "build/lib");
   std::filesystem::create_directory_symlink(MSO_BIN_DIR, folder / "build/bin");
   folder.write("page.sh", commandsOf(MSO_SOURCE_DIR "/doc/handbook/stock-applications.md"));
   const ProgramRun read = run("sh page.sh");
   EXPECT_EQ(read.status, 0) << read.output;
+  // Particles find the robot at the end of the path, which MRPT's own tests know.
+  static const std::regex pattern(R"(PDF estimation: \(([-\d.]+),([-\d.]+),([-\d.]+)deg\))");
+  double x = NAN, y = NAN, degrees = NAN;  // the last that was told
+  for (std::sregex_iterator it(read.output.begin(), read.output.end(), pattern), end; it != end;
+       ++it)
+    x = std::stod((*it)[1]), y = std::stod((*it)[2]), degrees = std::stod((*it)[3]);
+  EXPECT_LT(std::hypot(x - 15.904, y + 10.010), 0.3);
+  EXPECT_NEAR(degrees, 4.93, 2);
   for (const char* made :
        {"icp-slam-output/_finalmaps_.txt_semantic_map__CSemanticOctoMap_01.semantic",
         "from-keyframes_semantic_map__CSemanticOctoMap_00.3Dscene",

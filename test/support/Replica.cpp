@@ -34,10 +34,10 @@ LabeledFrame readFrame(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-std::vector<LabeledFrame> readReplica(const fs::path& folder) {
+std::vector<LabeledFrame> readReplica(const fs::path& folder, std::size_t most) {
   std::vector<LabeledFrame> frames;
   std::ifstream poses(folder / "groundtruth.txt");
-  for (std::string line; std::getline(poses, line);) {
+  for (std::string line; frames.size() < most && std::getline(poses, line);) {
     if (line.empty() || line[0] == '#') continue;
     std::istringstream in(line);
     std::string time;

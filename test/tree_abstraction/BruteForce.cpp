@@ -180,16 +180,14 @@ Optimum optimize(const Forest& tree, const AbstractionWeights& weights) {
   best.numTrees = trees.size();
   best.objective = trees.front().objective;
   for (const auto& t : trees) best.objective = std::max(best.objective, t.objective);
-  std::uint64_t inAll = ~std::uint64_t{0}, inAny = 0;
+  std::uint64_t inAll = ~std::uint64_t{0};
   const auto isOptimal = [&](const PrunedTree& t) { return t.objective > best.objective - 1e-13; };
   for (const auto& t : trees) {
     if (!isOptimal(t)) continue;
     ++best.numOptimal;
     inAll &= t.interior;
-    inAny |= t.interior;
   }
   best.inAll = enumeration.nodes(inAll);
-  best.inAny = enumeration.nodes(inAny);
   best.intersectionIsOptimal = std::any_of(trees.begin(), trees.end(), [&](const PrunedTree& t) {
     return isOptimal(t) && t.interior == inAll;
   });

@@ -13,8 +13,8 @@ struct Optimum {
   std::size_t numTrees = 0, numOptimal = 0;
   /** Largest J over that of the roots alone. */
   double objective = 0;
-  /** Interior nodes that all, and that any of the optimal trees have; ascending. */
-  std::vector<std::int32_t> inAll, inAny;
+  /** Interior nodes that all optimal trees have; ascending. */
+  std::vector<std::int32_t> inAll;
   /** Some optimal tree has exactly the interior nodes inAll. */
   bool intersectionIsOptimal = false;
 };

@@ -1,4 +1,4 @@
-#include <semantic_slam/Reference.h>
+#include "Reference.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 #pragma once
-#include <semantic_slam/Reference.h>
 #include <semantic_slam/Slam.h>
 #include <strict_files/OutputFiles.h>
 
 #include "MotionNoise.h"
 #include "PlaneSearch.h"
+#include "Reference.h"
 #include "SensorScale.h"
 
 namespace semantic_slam {
