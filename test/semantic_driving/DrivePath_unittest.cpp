@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/ForwardTurns.h>
 #include <semantic_driving/PathCheck.h>
 #include <semantic_driving/PathTracker.h>
 

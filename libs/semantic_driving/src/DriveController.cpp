@@ -43,7 +43,9 @@ const char* nameOf(DriveController::Driver driver) {
 
 DriveController::DriveController(const DriveOptions& options,
                                  const ReactiveNavigator::Options& reactive)
-    : m_tracker(options, reactive.footprint), m_track(kTrackLength), m_reactive(reactive) {}
+    : m_tracker(options, reactive.footprint),
+      m_track(kTrackLength),
+      m_reactive(reactive, options) {}
 
 void DriveController::setPath(DrivePath path) {
   m_tracker.setPath(std::move(path));
