@@ -24,10 +24,8 @@ struct PathJudgment {
   /** Nobody backs up farther at a stretch if it can be helped, meters. */
   static constexpr double kLongestBackwards = 4;
 
-  /** No long stretch backwards before classes before the price of driving.
-   * \param mostBackwards longer stretches are long, meters */
-  bool isClearlyBetterThan(const PathJudgment& other,
-                           double mostBackwards = kLongestBackwards) const;
+  /** No long stretch backwards before classes before the price of driving. */
+  bool isClearlyBetterThan(const PathJudgment& other) const;
 };
 
 /** Looks at paths again, on the planner's ground as it is now. */
