@@ -2,7 +2,6 @@
 
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
-#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/IniSection.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/Words.h>
@@ -16,7 +15,6 @@
 namespace semantic_map_ros2 {
 
 namespace fs = std::filesystem;
-using strict_files::IniSection;
 using strict_files::OptionList;
 
 void NodeOptions::describe(OptionList& list) {
@@ -133,35 +131,8 @@ void addFile(const fs::path& file, Source& source) {
   if (!isOfRos) addAll(yaml, yaml.root(), "", file.parent_path(), source);
 }
 
-void readPlanner(const Source& source, semantic_planning::PlannerOptions& planner) {
-  std::string vehicle;
-  OptionList list;
-  list.add("vehicle", vehicle, "", "file of the vehicle (.yaml)");
-  planner.describe(list);
-  IniSection section(source, "planner");
-  section.read(list);
-  section.finish();
-  if (!vehicle.empty()) planner.vehicle = semantic_planning::loadVehicle(vehicle);
-  planner.validate();
-}
-
-void readDrive(const Source& source, semantic_navigation::NavigatorOptions& navigation) {
-  std::string reactive;
-  OptionList list;
-  navigation.drive.describe(list);
-  list.add("reactive", reactive, "", "file of MRPT's reactive navigator (.ini)");
-  list.add("mapping_latency", navigation.mappingLatency, "s", strict_files::atLeast(0),
-           "from a scan until the map has it");
-  IniSection section(source, "drive");
-  section.read(list);
-  section.finish();
-  navigation.drive.validate();
-  navigation.reactive = reactive;
-}
-
 Parameters read(const Source& source) {
   Parameters p;
-  auto& n = p.navigation;
   strict_files::checkSections(source, {kNode, "map", "insertion", "abstraction", "slam", "planner",
                                        "drive", "guide", "movers", "focus", "explore"});
   strict_files::readSection(source, kNode, p.node);
@@ -169,13 +140,8 @@ Parameters read(const Source& source) {
   strict_files::readSection(source, "insertion", p.insertion);
   strict_files::readSection(source, "abstraction", p.abstraction);
   strict_files::readSection(source, "slam", p.slam);
-  readPlanner(source, n.planner);
-  readDrive(source, n);
-  strict_files::readSection(source, "guide", n.guide);
-  strict_files::readSection(source, "movers", n.movers);
-  strict_files::readSection(source, "focus", n.focus);
-  strict_files::readSection(source, "explore", n.explore);
-  if (p.node.drive && (p.node.order.empty() || n.reactive.empty()))
+  readSections(source, {}, {}, p.navigation);
+  if (p.node.drive && (p.node.order.empty() || p.navigation.reactive.empty()))
     throw std::runtime_error("drive: expected order and drive.reactive, too");
   return p;
 }

@@ -18,6 +18,18 @@ using Box = GroundCosts::Box;
 
 namespace {
 
+colored_graph::ClassOrder orderOf(const std::string& name,
+                                  const semantic_types::ClassTable& classes) {
+  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
+  return semantic_planning::loadClassOrder(config / "orders" / (name + ".yaml"), classes);
+}
+
+std::vector<int> someCosts(const colored_graph::ClassOrder& order) {
+  std::vector<int> costs(static_cast<std::size_t>(order.ranks()));
+  std::iota(costs.begin(), costs.end(), 0);
+  return costs;
+}
+
 void expectSame(const GroundCosts& a, const GroundCosts& b) {
   Box box = *a.box();
   box.add(b.box()->low), box.add(b.box()->high);
@@ -29,11 +41,9 @@ void expectSame(const GroundCosts& a, const GroundCosts& b) {
 }  // namespace
 
 TEST(GroundCosts, afterEachScanAreThoseOfTheWholeMap) {
-  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
-  const auto classes = semantic_types::loadClassTable(config / "classes/synthetic.yaml");
-  const auto order = semantic_planning::loadClassOrder(config / "orders/synthetic.yaml", classes);
-  std::vector<int> costs(static_cast<std::size_t>(order.ranks()));
-  std::iota(costs.begin(), costs.end(), 0);
+  const auto classes = synthetic_world::classTable();
+  const auto order = orderOf("synthetic", classes);
+  const std::vector<int> costs = someCosts(order);
   synthetic_world::LidarOptions lidar;
   lidar.rings = 24, lidar.columns = 240, lidar.maxRange = 12;
   const auto scene = synthetic_world::makeScene("village", 3);
@@ -69,18 +79,6 @@ TEST(GroundCosts, afterEachScanAreThoseOfTheWholeMap) {
 namespace {
 
 constexpr double kHeights[] = {0, 0.3, 1.73};  // of base_link above the ground, m
-
-colored_graph::ClassOrder orderOf(const std::string& name,
-                                  const semantic_types::ClassTable& classes) {
-  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
-  return semantic_planning::loadClassOrder(config / "orders" / (name + ".yaml"), classes);
-}
-
-std::vector<int> someCosts(const colored_graph::ClassOrder& order) {
-  std::vector<int> costs(static_cast<std::size_t>(order.ranks()));
-  std::iota(costs.begin(), costs.end(), 0);
-  return costs;
-}
 
 /** Each with its frame at another height. */
 class SomeRobots {

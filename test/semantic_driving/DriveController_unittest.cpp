@@ -5,7 +5,6 @@
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_driving/DriveController.h>
 #include <semantic_driving/ObstacleSensing.h>
-#include <semantic_driving/ReactiveNavigator.h>
 
 #include <algorithm>
 #include <cmath>
@@ -139,7 +138,7 @@ ObstaclePoints wallWithGap() {
 
 /** Whether it drives 6 m ahead, through the gap, within a quarter of a minute. */
 bool getsThrough(const ReactiveNavigator::Options& options) {
-  ReactiveNavigator navigator(options);
+  ReactiveNavigator navigator(options, {});
   mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
   simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
   PathPoint goal;
@@ -162,7 +161,7 @@ TEST(ReactiveNavigator, GoesThroughAGapWhereItFits) {
 }
 
 TEST(ReactiveNavigator, GoesAroundABendWithoutAStop) {
-  ReactiveNavigator navigator(optionsOf(0.2));
+  ReactiveNavigator navigator(optionsOf(0.2), {});
   mrpt::Clock::setActiveClock(mrpt::Clock::Source::Simulated);
   simulated_drive::SimulatedRobot robot({0, 0, 0}, {});
   constexpr double kRadius = 2, kSpacing = 1.2, kTurn = M_PI / 2;  // m, m, rad

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
-#include <semantic_driving/Motion.h>
 #include <semantic_driving/PathTracker.h>
 
 #include <cmath>

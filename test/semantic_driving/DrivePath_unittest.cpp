@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/ForwardTurns.h>
 #include <semantic_driving/PathCheck.h>
 #include <semantic_driving/PathTracker.h>
 
@@ -118,10 +117,6 @@ PathJudgment judged(std::vector<double> perRank) {
   return judgment;
 }
 
-bool isBetter(const PathJudgment& path, const PathJudgment& other) {
-  return path.isClearlyBetterThan(other);
-}
-
 TEST_F(OfAPath, TellsTheLengthOnEachRank) {
   const PathJudgment judgment = judge(alongX(12));
   EXPECT_TRUE(judgment.isFree());
@@ -159,20 +154,19 @@ TEST_F(OfAPath, TellsThePriceOfDrivingTheRest) {
 TEST(PathJudgment, AChangeOfGearOutweighsSomeMeters) {
   PathJudgment shunting = judged({8, 0}), ahead = judged({9, 0});
   shunting.price = 8 + 2.5 + 1.5;
-  EXPECT_TRUE(isBetter(ahead, shunting));
-  EXPECT_FALSE(isBetter(shunting, ahead));
+  EXPECT_TRUE(ahead.isClearlyBetterThan(shunting));
+  EXPECT_FALSE(shunting.isClearlyBetterThan(ahead));
   ahead.price = 11.4;  // less than a tenth less
-  EXPECT_FALSE(isBetter(ahead, shunting));
+  EXPECT_FALSE(ahead.isClearlyBetterThan(shunting));
 }
 
 TEST(PathJudgment, AFewMetersOfAWorseClassDoNotOutweighALongStretchBackwards) {
   PathJudgment far = judged({12, 0}), ahead = judged({9, 3});
   far.longestBackwards = 9;
-  EXPECT_TRUE(isBetter(ahead, far));
-  EXPECT_FALSE(isBetter(far, ahead));
+  EXPECT_TRUE(ahead.isClearlyBetterThan(far));
+  EXPECT_FALSE(far.isClearlyBetterThan(ahead));
   ahead.longestBackwards = 5;  // both
-  EXPECT_TRUE(isBetter(far, ahead));
-  EXPECT_TRUE(far.isClearlyBetterThan(judged({9, 3}), 9));
+  EXPECT_TRUE(far.isClearlyBetterThan(ahead));
 }
 
 TEST_F(OfAPath, TellsTheLongestStretchBackwardsOfTheRest) {
@@ -200,7 +194,7 @@ TEST(PathJudgment, IsBetterOnBetterClassesAndThenIfShorter) {
            {{2, 0}, {2.6, 0}, true},
            {{9, 1}, {9, 1.4}, false},  // as long on the worse class, in good approximation
            {{2, 1.4}, {9, 1}, true}})
-    EXPECT_EQ(isBetter(judged(row.path), judged(row.other)), row.better)
+    EXPECT_EQ(judged(row.path).isClearlyBetterThan(judged(row.other)), row.better)
         << row.path[0] << ", " << row.path[1];
 }
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_driving/Focus.h>
+#include <semantic_driving/PathTracker.h>
 #include <semantic_planning/planner/OrderFile.h>
 
 #include <algorithm>

@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/ObstacleSensing.h>
-#include <semantic_planning/planner/OrderFile.h>
 #include <synthetic_world/Objects.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "../semantic_planning/PaintedWorld.h"
+#include "PaintedPlanner.h"
 
 using namespace semantic_driving;
 using namespace semantic_planning;
@@ -23,15 +22,7 @@ class ObstacleSensing : public testing::Test {
     world.box(-3, -2.8, 1, 1.2, 0, 1, PaintedWorld::Wall);
   }
 
-  semantic_octree::SemanticOcTree& map() {
-    semantic_octree::SemanticOcTree& m = world.map();
-    if (!hasAbstraction(m)) setAbstraction(m, abstractionFor(order));
-    return m;
-  }
-  SemanticPlanner planner() { return SemanticPlanner(map(), order, {}); }
-
   PaintedWorld world;
-  colored_graph::ClassOrder order{5, {{1}, {2}, {0}}};
 };
 
 bool hasPoint(const ObstaclePoints& points, double x, double y) {
@@ -43,8 +34,7 @@ bool hasPoint(const ObstaclePoints& points, double x, double y) {
 }  // namespace
 
 TEST_F(ObstacleSensing, FindsWallsPostsAndForbiddenGround) {
-  SemanticPlanner planner = this->planner();
-  planner.plan({0, 0, 0}, {0, -3, 0});
+  const SemanticPlanner planner = plannerOver(world);
   const ObstaclePoints points = senseObstacles(planner, {0, 0, 0}, 0);
   EXPECT_TRUE(hasPoint(points, 3.1, 0.1));
   EXPECT_TRUE(hasPoint(points, -2.9, 1.1));
@@ -56,8 +46,7 @@ TEST_F(ObstacleSensing, FindsWallsPostsAndForbiddenGround) {
 }
 
 TEST_F(ObstacleSensing, IsInTheVehiclesFrame) {
-  SemanticPlanner planner = this->planner();
-  planner.plan({0, 0, 0}, {0, -3, 0});
+  const SemanticPlanner planner = plannerOver(world);
   const ObstaclePoints points = senseObstacles(planner, {1, 1, M_PI / 2}, 0);
   EXPECT_TRUE(hasPoint(points, -0.9, -2.1));  // the wall at (3.1, 0.1)
 }

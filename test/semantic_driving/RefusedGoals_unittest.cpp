@@ -1,6 +1,6 @@
 // Drives to goals that cannot be reached, or only seem so.
 #include <gtest/gtest.h>
-#include <semantic_driving/GoalFit.h>
+#include <semantic_driving/PathCheck.h>
 #include <synthetic_world/Objects.h>
 
 #include <cmath>

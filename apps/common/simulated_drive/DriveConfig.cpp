@@ -2,7 +2,6 @@
 
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt/math/wrap2pi.h>
-#include <semantic_planning/vehicle/VehicleOptions.h>
 #include <strict_files/IniSection.h>
 #include <synthetic_world/Solids.h>
 
@@ -87,17 +86,6 @@ using strict_files::readSection;
 
 namespace {
 
-/** Beside DriveOptions in the same section. */
-void describeLoop(DriveConfig& config, std::string& reactive, OptionList& list) {
-  list.add("reactive", reactive, "", "file of MRPT's reactive navigator (.ini)");
-  list.add("control_period", config.controlPeriod, "s", above(0), "between commands");
-  list.add(
-      "mapping_latency", config.mappingLatency, "s", strict_files::atLeast(0),
-      "from a scan until the map has it, in a thread of its own; till then the robot drives by "
-      "what it knew");
-  list.add("time_limit", config.timeLimit, "s", above(0), "of simulated time");
-}
-
 void readMap(const CConfigFile& ini, const fs::path& folder, DriveConfig& config) {
   OptionList map;
   map.add("resolution", config.voxelSize, "m", above(0), "edge of a voxel");
@@ -140,25 +128,12 @@ void setSensor(DriveConfig& config) {
     explore.sensor.range = std::min(explore.sensor.range, config.insertion.maxRange);
 }
 
-void readPlanner(const CConfigFile& ini, const fs::path& folder,
-                 semantic_planning::PlannerOptions& planner) {
-  std::string vehicle;
-  OptionList list;
-  list.add("vehicle", vehicle, "", "file of the vehicle (.yaml)");
-  planner.describe(list);
-  readOptions(ini, "planner", list);
-  if (!vehicle.empty()) planner.vehicle = semantic_planning::loadVehicle(folder / vehicle);
-  planner.validate();
-}
-
-void readDrive(const CConfigFile& ini, const fs::path& folder, DriveConfig& config) {
-  std::string reactive;
-  OptionList list = OptionList::of(config.drive);
-  describeLoop(config, reactive, list);
-  const IniSection section = readOptions(ini, "drive", list);
-  config.drive.validate();
-  if (reactive.empty()) section.fail("reactive: expected MRPT's .ini file");
-  config.reactive = (folder / reactive).lexically_normal();
+void readNavigation(const CConfigFile& ini, const fs::path& folder, DriveConfig& config) {
+  OptionList drive;
+  drive.add("control_period", config.controlPeriod, "s", above(0), "between commands");
+  drive.add("time_limit", config.timeLimit, "s", above(0), "of simulated time");
+  readSections(ini, folder, drive, config);
+  if (config.reactive.empty()) IniSection(ini, "drive").fail("reactive: expected MRPT's .ini file");
 }
 
 }  // namespace
@@ -193,12 +168,7 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readSensors(ini, config.sensors);
     readSection(ini, "pose", config.pose);
     readSection(ini, "slam", config.slam);
-    readPlanner(ini, folder, config.planner);
-    readDrive(ini, folder, config);
-    readSection(ini, "guide", config.guide);
-    readSection(ini, "movers", config.movers);
-    readSection(ini, "focus", config.focus);
-    readSection(ini, "explore", config.explore);
+    readNavigation(ini, folder, config);
     setSensor(config);
     const semantic_driving::MoverTracker known(config.movers, synthetic_world::classTable());
     strict_files::checkSections(

@@ -14,7 +14,6 @@ using semantic_planning::PathPoint;
 
 namespace {
 
-constexpr double kTrackLength = 10;  // m of the driven track that are kept to go back on
 // For MRPT's navigator: between waypoints, how near is near enough, and what room around the
 // footprint they have, or are left out; m.
 constexpr double kWaypointSpacing = 1.2, kWaypointReach = 0.5, kWaypointMargin = 0.3;
@@ -43,7 +42,7 @@ const char* nameOf(DriveController::Driver driver) {
 
 DriveController::DriveController(const DriveOptions& options,
                                  const ReactiveNavigator::Options& reactive)
-    : m_tracker(options, reactive.footprint), m_track(kTrackLength), m_reactive(reactive) {}
+    : m_tracker(options, reactive.footprint), m_reactive(reactive, options) {}
 
 void DriveController::setPath(DrivePath path) {
   m_tracker.setPath(std::move(path));

@@ -1,6 +1,5 @@
 #include <mrpt/core/format.h>
 #include <semantic_driving/DriveGuide.h>
-#include <semantic_driving/Motion.h>
 
 #include <algorithm>
 #include <cmath>

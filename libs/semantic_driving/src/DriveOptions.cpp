@@ -1,6 +1,5 @@
 #include <semantic_driving/DriveOptions.h>
 
-#include <semantic_driving/Motion.h>
 #include <semantic_types/ClassTable.h>
 
 #include <algorithm>

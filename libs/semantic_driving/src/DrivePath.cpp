@@ -163,9 +163,9 @@ using semantic_planning::Fit;
 using semantic_planning::PathPoint;
 using semantic_planning::SemanticPlanner;
 
-bool PathJudgment::isClearlyBetterThan(const PathJudgment& other, double mostBackwards) const {
-  const bool backsUp = longestBackwards > mostBackwards;
-  const bool otherBacksUp = other.longestBackwards > mostBackwards;
+bool PathJudgment::isClearlyBetterThan(const PathJudgment& other) const {
+  const bool backsUp = longestBackwards > kLongestBackwards;
+  const bool otherBacksUp = other.longestBackwards > kLongestBackwards;
   if (backsUp != otherBacksUp) return otherBacksUp;
   const double same = std::max(kSameLength, kSameShare * other.length);  // m
   for (std::size_t rank = lengthPerRank.size(); rank-- > 1;) {

@@ -1,4 +1,4 @@
-#include <semantic_driving/ForwardTurns.h>
+#include <semantic_driving/PathCheck.h>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include <mrpt/core/format.h>
 #include <mrpt/math/wrap2pi.h>
 #include <semantic_driving/Explorer.h>
-#include <semantic_driving/GoalFit.h>
+#include <semantic_driving/PathCheck.h>
 #include <semantic_planning/roadmap/CollisionChecker.h>
 
 #include <algorithm>

@@ -28,13 +28,6 @@ constexpr double kNearFrontier = 3;  // m before a frontier the next one is look
 // backwards; m/s.
 constexpr double kSlow = 0.2;
 
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
-
 template <class A>
 bool does(const GuideState& state) {
   return std::holds_alternative<A>(state.activity);
@@ -42,13 +35,10 @@ bool does(const GuideState& state) {
 
 /** Where it is kept since when the way is blocked; null if that does not matter. */
 std::optional<double>* blockedSince(Activity& activity) {
-  using Since = std::optional<double>*;
-  return std::visit(
-      Overloaded{[](ToGoal& a) -> Since { return &a.blockedSince; },
-                 [](ToFrontier& a) -> Since { return &a.blockedSince; },
-                 [](Recovering& a) -> Since { return a.blind ? &a.blockedSince : nullptr; },
-                 [](auto&) -> Since { return nullptr; }},
-      activity);
+  if (auto* a = std::get_if<ToGoal>(&activity)) return &a->blockedSince;
+  if (auto* a = std::get_if<ToFrontier>(&activity)) return &a->blockedSince;
+  auto* a = std::get_if<Recovering>(&activity);
+  return a && a->blind ? &a->blockedSince : nullptr;
 }
 
 bool isStuck(const GuideState& state, const Look& look, const GuideOptions& options) {

@@ -1,7 +1,6 @@
 #include <semantic_driving/PathTracker.h>
 
 #include <mrpt/math/wrap2pi.h>
-#include <semantic_driving/Focus.h>
 
 #include <algorithm>
 #include <cmath>

@@ -18,8 +18,8 @@ using semantic_planning::PathPoint;
 using Options = ReactiveNavigator::Options;
 
 struct ReactiveNavigator::Navigation {
-  explicit Navigation(const Options& options)
-      : system(makeReactiveSystem(robot, options, scratch.path())) {}
+  Navigation(const Options& options, const DriveOptions& limits)
+      : system(makeReactiveSystem(robot, options, limits, scratch.path())) {}
 
   ScratchFolder scratch;
   RobotInterface robot;
@@ -27,10 +27,9 @@ struct ReactiveNavigator::Navigation {
   bool started = false;
 };
 
-ReactiveNavigator::ReactiveNavigator(const Options& options)
-    : m_navigation(std::make_unique<Navigation>(options)) {}
+ReactiveNavigator::ReactiveNavigator(const Options& options, const DriveOptions& limits)
+    : m_navigation(std::make_unique<Navigation>(options, limits)) {}
 ReactiveNavigator::~ReactiveNavigator() = default;
-ReactiveNavigator::ReactiveNavigator(ReactiveNavigator&&) noexcept = default;
 
 void ReactiveNavigator::setWaypoints(const std::vector<PathPoint>& waypoints, double reach) {
   mrpt::nav::TWaypointSequence sequence;
@@ -44,11 +43,6 @@ void ReactiveNavigator::setWaypoints(const std::vector<PathPoint>& waypoints, do
   m_navigation->started = true;
   m_navigation->system->resetNavError();
   m_navigation->system->navigateWaypoints(sequence);
-}
-
-void ReactiveNavigator::cancel() {
-  m_navigation->started = false;
-  m_navigation->system->cancel();
 }
 
 DriveCommand ReactiveNavigator::step(const DriveState& state, const ObstaclePoints& obstacles,
@@ -91,14 +85,14 @@ class Quiet : public CReactiveNavigationSystem {
   ~Quiet() override { m_timlog_delays.clear(true); }
 };
 
-void writeLimits(CConfigFile& file, const Options& options) {
-  const double turn = options.maxSpeed / options.turningRadius * 180 / M_PI;
-  file.write("CAbstractPTGBasedReactive", "robotMax_V_mps", options.maxSpeed);
+void writeLimits(CConfigFile& file, const DriveOptions& limits) {
+  const double turn = limits.maxSpeed / limits.turningRadius * 180 / M_PI;
+  file.write("CAbstractPTGBasedReactive", "robotMax_V_mps", limits.maxSpeed);
   file.write("CAbstractPTGBasedReactive", "robotMax_W_degps", turn);
   const int count = file.read_int(kSection, "PTG_COUNT", 0, true);
   for (int i = 0; i < count; ++i) {
     const std::string name = "PTG" + std::to_string(i);
-    file.write(kSection, name + "_v_max_mps", options.maxSpeed);
+    file.write(kSection, name + "_v_max_mps", limits.maxSpeed);
     file.write(kSection, name + "_w_max_dps", turn);
   }
 }
@@ -121,11 +115,12 @@ void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t f
 }
 
 std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
-    RobotInterface& robot, const Options& options, const std::filesystem::path& tables) {
+    RobotInterface& robot, const Options& options, const DriveOptions& limits,
+    const std::filesystem::path& tables) {
   if (!std::filesystem::exists(options.config))
     throw std::runtime_error(options.config.string() + ": no such file");
   CConfigFile file(options.config.string());
-  writeLimits(file, options);
+  writeLimits(file, limits);
   completeHolonomicFactors(file, kHolonomicFactors);
   file.discardSavingChanges();  // or MRPT writes the file anew
   robot.logging_enable_console_output = false;
@@ -138,7 +133,7 @@ std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
   // MRPT 2.5.8 does not read the key of this name.
   system->params_abstract_ptg_navigator.ptg_cache_files_directory = tables.string();
   mrpt::math::CPolygon shape;
-  for (const Eigen::Vector2d& p : options.footprint.inflated(options.margin))
+  for (const Eigen::Vector2d& p : options.footprint.inflated(limits.margin))
     shape.emplace_back(p.x(), p.y());
   system->changeRobotShape(shape);
   system->initialize();

@@ -41,7 +41,7 @@ void completeHolonomicFactors(mrpt::config::CConfigFileBase& file, std::size_t f
  * \param tables folder of the tables that MRPT makes
  * \throw std::exception the file is missing, or what MRPT does not like about it. */
 std::unique_ptr<mrpt::nav::CAbstractPTGBasedReactive> makeReactiveSystem(
-    RobotInterface& robot, const ReactiveNavigator::Options& options,
+    RobotInterface& robot, const ReactiveNavigator::Options& options, const DriveOptions& limits,
     const std::filesystem::path& tables);
 
 }  // namespace semantic_driving

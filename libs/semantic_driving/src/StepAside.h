@@ -1,6 +1,5 @@
 #pragma once
 #include <semantic_driving/DriveOptions.h>
-#include <semantic_driving/Motion.h>
 #include <semantic_driving/Movers.h>
 #include <semantic_planning/vehicle/Footprint.h>
 

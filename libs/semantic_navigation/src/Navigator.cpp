@@ -48,17 +48,6 @@ constexpr double kSameTime = 1e-6;  // s
 constexpr double kNever = -1e9;     // s
 constexpr double kRoom = 4;         // m: how far it may step aside
 
-ReactiveNavigator::Options reactiveOf(const NavigatorOptions& options) {
-  ReactiveNavigator::Options reactive;
-  reactive.config = options.reactive;
-  reactive.footprint = options.planner.vehicle.footprint;
-  reactive.margin = options.drive.margin;
-  reactive.maxSpeed = options.drive.maxSpeed;
-  reactive.turningRadius = options.drive.turningRadius;
-  reactive.logFolder = options.logFolder;
-  return reactive;
-}
-
 NavigatorOptions completed(NavigatorOptions options, double voxelSize) {
   options.setFor(voxelSize);
   return options;
@@ -147,7 +136,8 @@ Navigator::Navigator(Mapper& mapper, const colored_graph::ClassOrder& order,
       m_mapper(mapper),
       m_planner(plannerOn(mapper.map(), order, m_options)),
       m_leaves(mapper.map()),
-      m_controller(m_options.drive, reactiveOf(m_options)),
+      m_controller(m_options.drive,
+                   {m_options.reactive, m_options.planner.vehicle.footprint, m_options.logFolder}),
       m_movers(m_options.movers, mapper.map().classes()),
       m_mappedAt(kNever) {
   m_mapper.setMovers(m_movers.isMover());
@@ -223,8 +213,8 @@ void Navigator::insert(const std::vector<SensorScan>& seen, double seconds) {
     return finish();
   }
   const double drivenMeanwhile = m_options.drive.maxSpeed * m_options.mappingLatency;
-  m_before = knownObstacles(m_options.obstacleRadius() + drivenMeanwhile);
-  m_roomBefore = knownRoom(kRoom + drivenMeanwhile);
+  m_before = knownObstacles(m_options.obstacleRadius() + drivenMeanwhile, false);
+  m_roomBefore = knownObstacles(kRoom + drivenMeanwhile, true);
   m_beforeAt = m_state.pose;
   m_inserting = std::async(std::launch::async, std::move(fillMap));
 }
@@ -316,13 +306,11 @@ DriveCommand Navigator::step(double seconds) {
   if (m_guidesNext && mayGuide()) guide(seconds);
   CpuClock clock;
   const Movers movers = m_movers.at(seconds);
-  ObstaclePoints around = obstacles();
+  ObstaclePoints around = obstacles(m_options.obstacleRadius(), false);
   addStanding(movers, m_state.pose, around);
   note("obstacles", clock.lap());
   ObstaclePoints room;
-  if (!movers.empty())
-    room =
-        isInserting() ? seenFrom(m_roomBefore, m_beforeAt, m_state.pose, kRoom) : knownRoom(kRoom);
+  if (!movers.empty()) room = obstacles(kRoom, true);
   const DriveCommand command = m_controller.step(m_state, around, seconds - m_mappedAt, seconds,
                                                  movers, movers.empty() ? nullptr : &room);
   note("react", clock.lap());
@@ -376,25 +364,18 @@ void Navigator::endExploring(const std::string& why) {
 }
 
 /** What of the map is in the way, in the robot's frame. */
-ObstaclePoints Navigator::knownObstacles(double radius) const {
-  ObstacleOptions options = m_guide ? m_guide->obstacles() : ObstacleOptions();
+ObstaclePoints Navigator::knownObstacles(double radius, bool unknown) const {
+  ObstacleOptions options = m_guide && !unknown ? m_guide->obstacles() : ObstacleOptions();
   options.radius = radius;
+  options.unknown = unknown;
   return senseObstacles(m_planner, m_state.pose, m_z, options);
 }
 
-/** Obstacles, and what is not known to be ground. */
-ObstaclePoints Navigator::knownRoom(double radius) const {
-  ObstacleOptions options;
-  options.radius = radius;
-  options.unknown = true;
-  return senseObstacles(m_planner, m_state.pose, m_z, options);
-}
-
-/** What is in the way around the robot; while a scan is inserted, as it was known before. */
-ObstaclePoints Navigator::obstacles() const {
-  const double radius = m_options.obstacleRadius();
-  return isInserting() ? seenFrom(m_before, m_beforeAt, m_state.pose, radius)
-                       : knownObstacles(radius);
+/** While a scan is inserted, as it was known before. */
+ObstaclePoints Navigator::obstacles(double radius, bool unknown) const {
+  return isInserting()
+             ? seenFrom(unknown ? m_roomBefore : m_before, m_beforeAt, m_state.pose, radius)
+             : knownObstacles(radius, unknown);
 }
 
 Navigator::Status Navigator::status() const {

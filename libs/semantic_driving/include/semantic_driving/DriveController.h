@@ -1,6 +1,5 @@
 #pragma once
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/Motion.h>
 #include <semantic_driving/Movers.h>
 #include <semantic_driving/PathTracker.h>
 #include <semantic_driving/ReactiveNavigator.h>

@@ -1,8 +1,6 @@
 #pragma once
 #include <semantic_driving/DriveController.h>
 #include <semantic_driving/Explorer.h>
-#include <semantic_driving/ForwardTurns.h>
-#include <semantic_driving/GoalFit.h>
 #include <semantic_driving/GuideTransitions.h>
 #include <semantic_driving/ObstacleSensing.h>
 #include <semantic_driving/PathCheck.h>

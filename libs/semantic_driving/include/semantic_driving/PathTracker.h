@@ -1,4 +1,5 @@
 #pragma once
+#include <semantic_abstraction/AbstractionOptions.h>
 #include <semantic_driving/DriveOptions.h>
 #include <semantic_driving/DrivePath.h>
 #include <semantic_planning/vehicle/Footprint.h>
@@ -58,5 +59,24 @@ class PathTracker {
   std::vector<double> m_classSpeeds;
   double m_progress = 0, m_offset = 0;
 };
+
+/** Where a drive wants all detail of the compressed tree: p(x) of the abstraction is 1 around the
+ * vehicle and along the path ahead, and 0 elsewhere. */
+struct FocusOptions {
+  double corridor = 0;  ///< on both sides of the path ahead, meters; 0: p(x) is 1 everywhere
+  double around = 0;    ///< around the vehicle, meters; 0: a Navigator takes where obstacles matter
+
+  bool isOn() const { return corridor > 0; }
+  void describe(strict_files::OptionList& list);
+  /** \throw std::invalid_argument naming the option and its value. */
+  void validate() const;
+};
+
+/** The regions of p(x) for a vehicle (map frame, meters) on its path; none without a focus. A
+ * stretch of the path keeps its region as long as any of it is ahead, so that little changes from
+ * call to call. */
+std::vector<semantic_octree::Region> regionsAhead(const DrivePath& path, double progress,
+                                                  const Eigen::Vector3d& vehicle,
+                                                  const FocusOptions& options);
 
 }  // namespace semantic_driving

@@ -18,9 +18,6 @@ class ReactiveNavigator {
   struct Options {
     std::filesystem::path config;  ///< MRPT's .ini, see config/reactive
     semantic_planning::Footprint footprint;
-    double margin = 0.1;  ///< kept free around the footprint, meters
-    /** Speed and least radius of the trajectories, whatever the file says. */
-    double maxSpeed = 1, turningRadius = 0.8;  ///< m/s, meters
     /** For what MRPT's navlog-viewer reads: log_000.reactivenavlog, or the next free number,
      * complete when the navigator is gone. Empty: none. */
     std::filesystem::path logFolder;
@@ -28,15 +25,15 @@ class ReactiveNavigator {
   enum class Status { Idle, Driving, Arrived, Blocked };
 
   /** Computes the trajectories, which takes a moment.
+   * \param limits speed and least radius of the trajectories, whatever the file says, and what is
+   * kept free around the footprint
    * \throw std::exception the file is missing, or what MRPT does not like about it. */
-  explicit ReactiveNavigator(const Options& options);
+  ReactiveNavigator(const Options& options, const DriveOptions& limits);
   ~ReactiveNavigator();
-  ReactiveNavigator(ReactiveNavigator&&) noexcept;
 
   /** Goes through these places one after the other, from now on.
    * \param reach how near is near enough, meters */
   void setWaypoints(const std::vector<semantic_planning::PathPoint>& waypoints, double reach);
-  void cancel();
 
   /** \param seconds of the clock that runs while navigating */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double seconds);

@@ -1,9 +1,9 @@
 #pragma once
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_driving/DriveGuide.h>
-#include <semantic_driving/Focus.h>
 #include <semantic_driving/ViewStrategy.h>
 #include <semantic_slam/Mapper.h>
+#include <strict_files/IniSection.h>
 
 #include <filesystem>
 #include <functional>
@@ -36,6 +36,33 @@ struct NavigatorOptions {
    * chooses between ways; meters. */
   double obstacleRadius() const;
 };
+
+/** Reads the sections planner, drive, guide, movers, focus and explore, and checks them.
+ * \param source as for strict_files::IniSection \param folder files are relative to it
+ * \param drive what else [drive] may hold
+ * \throw std::runtime_error naming section, key and value. */
+template <class Source>
+void readSections(const Source& source, const std::filesystem::path& folder,
+                  strict_files::OptionList drive, NavigatorOptions& options) {
+  std::string vehicle, reactive;
+  strict_files::OptionList planner;
+  planner.add("vehicle", vehicle, "", "file of the vehicle (.yaml)");
+  options.planner.describe(planner);
+  strict_files::readOptions(source, "planner", planner);
+  if (!vehicle.empty()) options.planner.vehicle = semantic_planning::loadVehicle(folder / vehicle);
+  options.planner.validate();
+  options.drive.describe(drive);
+  drive.add("reactive", reactive, "", "file of MRPT's reactive navigator (.ini)");
+  drive.add("mapping_latency", options.mappingLatency, "s", strict_files::atLeast(0),
+            "from a scan until the map has it; till then the robot drives by what it knew");
+  strict_files::readOptions(source, "drive", drive);
+  options.drive.validate();
+  if (!reactive.empty()) options.reactive = (folder / reactive).lexically_normal();
+  strict_files::readSection(source, "guide", options.guide);
+  strict_files::readSection(source, "movers", options.movers);
+  strict_files::readSection(source, "focus", options.focus);
+  strict_files::readSection(source, "explore", options.explore);
+}
 
 /** Where odometry has the robot, and how it moves. */
 struct RobotState {
@@ -144,9 +171,9 @@ class Navigator {
   void chooseView();
   void conclude(const std::string& why);
   bool isTimeToChoose() const;
-  semantic_driving::ObstaclePoints knownObstacles(double radius) const;
-  semantic_driving::ObstaclePoints knownRoom(double radius) const;
-  semantic_driving::ObstaclePoints obstacles() const;
+  /** \param unknown whatever is not known to be ground is an obstacle, too */
+  semantic_driving::ObstaclePoints knownObstacles(double radius, bool unknown) const;
+  semantic_driving::ObstaclePoints obstacles(double radius, bool unknown) const;
   void note(const std::string& stage, double milliseconds) const;
 
   NavigatorOptions m_options;
