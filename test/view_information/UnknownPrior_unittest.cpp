@@ -395,7 +395,7 @@ TEST(GainField, promisesNothingOfWhatBeamsPassedForWhoKnowsAir) {
   s.field.update();
   EXPECT_GT(s.field.at(key)->gain, 0.1);
   FlatGround ground(key[2] - 3);
-  const ViewTemplate straight({1.2, -90, -89, 360}, kVoxel);
+  const ViewTemplate straight({1.3, -90, -89, 360}, kVoxel);
   const SectorGains gains = s.field.sweep(straight, ground, keyAt(s.map, 0.05, 0.05, 1.05));
   EXPECT_EQ(gainOfHeading(gains, 0, 360), 0);
 }
