@@ -38,17 +38,6 @@ struct TwoSides {
   }
 };
 
-/** A wall 2 m high, along the grass at x = -3.1. */
-void buildWall(SemanticOcTree& map) {
-  semantic_types::LabeledCloud cloud;
-  for (int i = -20; i < 20; ++i)
-    for (int j = 1; j < 20; ++j) {
-      cloud.points.emplace_back(-3.1F, 0.1F * static_cast<float>(i), 0.1F * static_cast<float>(j));
-      cloud.classes.push_back(kWall);
-    }
-  for (int i = 0; i < 4; ++i) map.insert(cloud, Eigen::Isometry3d::Identity());
-}
-
 }  // namespace
 
 TEST(UnknownPrior, withoutALearnedOneWeightsBringNothing) {
@@ -137,31 +126,16 @@ TEST(UnknownPrior, groundThatChangesItsClassChangesWhatIsNear) {
 
 TEST(UnknownPrior, whatStandsOnGroundIsExpectedOnSuchGround) {
   TwoSides sides(kWall);
-  buildWall(sides.map);
+  semantic_types::LabeledCloud cloud;  // 2 m high, along the grass at x = -3.1
+  for (int i = -20; i < 20; ++i)
+    for (int j = 1; j < 20; ++j) {
+      cloud.points.emplace_back(-3.1F, 0.1F * static_cast<float>(i), 0.1F * static_cast<float>(j));
+      cloud.classes.push_back(kWall);
+    }
+  for (int i = 0; i < 4; ++i) sides.map.insert(cloud, Eigen::Isometry3d::Identity());
   LearnedPrior prior(sides.map, sides.question);
   sides.teach(prior);
   const float grass = prior.patch((kOrigin - 34) / 4, kOrigin / 4).above.gain;
   const float road = prior.patch((kOrigin + 34) / 4, kOrigin / 4).above.gain;
   EXPECT_GT(grass, 2 * road);
-}
-
-TEST(UnknownPrior, aThingIsExpectedOnTheGroundBesideItAndPromisesNothingOfItself) {
-  TwoSides sides(kWall);
-  buildWall(sides.map);
-  LearnedPrior onGrass(sides.map, sides.question), onItself(sides.map, sides.question);
-  constexpr int kWallFrom = -26, kGrassFrom = -15, kWide = 10;  // columns
-  for (int y = -kWide; y < kWide; ++y) {
-    for (int x = kWallFrom; x < kGrassFrom; ++x) {
-      onGrass.learn(kOrigin + x, kOrigin + y, kGroundKey, kWall, kGrass);
-      onItself.learn(kOrigin + x, kOrigin + y, kGroundKey, kWall);
-    }
-    for (int x = kGrassFrom; x < 0; ++x)
-      for (LearnedPrior* prior : {&onGrass, &onItself})
-        prior->learn(kOrigin + x, kOrigin + y, kGroundKey, kGrass);
-  }
-  const auto aboveAt = [](LearnedPrior& prior, int x, int y) {
-    return prior.patch((kOrigin + x) / 4, (kOrigin + y) / 4).above.gain;
-  };
-  EXPECT_GT(aboveAt(onGrass, -8, 16), 2 * aboveAt(onItself, -8, 16));
-  EXPECT_LT(aboveAt(onGrass, -30, 0), aboveAt(onGrass, -8, 16) / 2);
 }

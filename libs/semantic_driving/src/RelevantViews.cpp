@@ -184,8 +184,7 @@ void RelevantViews::learnThing(Column c, const GroundPoint& here) {
   for (const Column& d : kNeighbors) {
     const Surface* ground = groundOf({c.x + d.x, c.y + d.y}, here);
     const ClassId id = ground ? risingFrom(ground->z, c) : semantic_types::kNoClass;
-    if (id != semantic_types::kNoClass)
-      return m_learned->learn(c.x, c.y, ground->z, id, ground->classId);
+    if (id != semantic_types::kNoClass) return m_learned->learn(c.x, c.y, ground->z, id);
   }
 }
 

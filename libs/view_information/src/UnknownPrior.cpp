@@ -55,12 +55,12 @@ LearnedPrior::LearnedPrior(const semantic_octree::SemanticOcTree& map, const Que
   spread();
 }
 
-void LearnedPrior::learn(int x, int y, int z, ClassId thing, ClassId ground) {
+void LearnedPrior::learn(int x, int y, int z, ClassId ground) {
   constexpr int kEdge = UnknownPatch::kEdge;
   const int px = x / kEdge, py = y / kEdge, column = x % kEdge * kEdge + y % kEdge;
   Patch& patch = blockOf(px, py).patches[numberOf(px, py)];
   Ground& known = patch.columns[static_cast<std::size_t>(column)];
-  const Ground now{thing, static_cast<std::uint16_t>(z)};
+  const Ground now{ground, static_cast<std::uint16_t>(z)};
   if (known.z == now.z && known.id == now.id) return;
   if (known.z == 0) learnAbove(x, y, z, ground), m_usualHeight = z;
   known = now;
@@ -180,16 +180,14 @@ LearnedPrior::Distribution LearnedPrior::ground(const Near& near) const {
   return p;
 }
 
-/** What a voxel above it is: each class of ground has its own things, that of things has none. */
+/** What a voxel above it is: each class of ground has its own things. */
 LearnedPrior::Distribution LearnedPrior::above(const Distribution& ground) const {
   constexpr double kNotSeenYet = 4, kThings = 0.1;  // looks, and the share of things in these
   const auto K = static_cast<double>(ground.size() - 1);
   Distribution p(ground.size(), 0);
   for (std::size_t g = 1; g < ground.size(); ++g) {
-    double seen = 0;
+    double seen = kNotSeenYet;
     for (const double count : m_standsOn[g]) seen += count;
-    if (seen == 0) continue;
-    seen += kNotSeenYet;
     for (std::size_t k = 1; k < p.size(); ++k)
       p[k] += ground[g] / kGroundIsThere * (m_standsOn[g][k] + kNotSeenYet * kThings / K) / seen;
   }

@@ -80,12 +80,9 @@ class LearnedPrior : public UnknownPrior {
   /** \param map must outlive this. */
   LearnedPrior(const semantic_octree::SemanticOcTree& map, const Question& question);
 
-  /** The ground of one column of voxels, x, y, z: keys. What stands on it is looked up in the map.
-   */
-  void learn(int x, int y, int z, ClassId ground) { learn(x, y, z, ground, ground); }
-  /** A thing that hides the ground counts as ground of its class, on which nothing is expected: a
-   * thing that is known does not promise itself. It stands on the ground beside it. */
-  void learn(int x, int y, int z, ClassId thing, ClassId ground);
+  /** The ground of one column of voxels, x, y, z: keys, or what hides it. What stands on it is
+   * looked up in the map. */
+  void learn(int x, int y, int z, ClassId ground);
   const UnknownPatch& patch(int x, int y) override;
   /** The prior of a patch for who only looks on: nothing is remembered. */
   UnknownPatch lookAt(int x, int y) const;
