@@ -51,16 +51,21 @@ TEST(ExploreTrial, endsByItselfWithNearlyAllThatMoreMetersFind) {
       << byItself.end;
 }
 
+/** Of three villages: a single short drive may have bad luck. */
 TEST(ExploreTrial, ofOtherWeightsDrivesElsewhereAndWinsThere) {
-  const auto scene = synthetic_world::makeScene("village", 72);
   const auto config = lookingAround(60);
-  const mrpt::math::TPose2D start(scene.route.at(0).x(), scene.route.at(0).y(), 0);
   const auto shareOf = [&](const std::set<int>& weights, const std::set<int>& ground) {
     const ExploreTask task = lookingFor(weights, {ground.begin(), ground.end()});
-    return explore(config, scene, syntheticOrder(), task, start, Exploring::Relevant).share();
+    double sum = 0;
+    for (const std::uint64_t seed : {72, 73, 74}) {
+      const auto scene = synthetic_world::makeScene("village", seed);
+      const mrpt::math::TPose2D start(scene.route.at(0).x(), scene.route.at(0).y(), 0);
+      sum += explore(config, scene, syntheticOrder(), task, start, Exploring::Relevant).share();
+    }
+    return sum;
   };
-  EXPECT_GT(shareOf(kStreets, kStreets), 1.1 * shareOf(kLawns, kStreets));
-  EXPECT_GT(shareOf(kLawns, kLawns), 1.1 * shareOf(kStreets, kLawns));
+  EXPECT_GT(shareOf(kStreets, kStreets), 1.5 * shareOf(kLawns, kStreets));
+  EXPECT_GT(shareOf(kLawns, kLawns), 1.5 * shareOf(kStreets, kLawns));
 }
 
 namespace {
