@@ -24,9 +24,14 @@ KnownShare::KnownShare(semantic_octree::SemanticOcTree& map, const synthetic_wor
       m_classes(task.classes),
       m_far(task.within),
       m_follower(map.follow()) {
+  std::set<ClassId> things = m_classes;
   for (double x = -m_far; x < m_far; x += map.getResolution())
-    for (double y = -m_far; y < m_far; y += map.getResolution()) m_all += isGround(x, y);
-  if (m_all == 0) findThings();
+    for (double y = -m_far; y < m_far; y += map.getResolution()) {
+      if (!isGround(x, y)) continue;
+      ++m_all;
+      things.erase(m_world.groundClass(x, y));
+    }
+  if (!things.empty()) findThings(things);
 }
 
 bool KnownShare::isWithin(double x, double y) const {
@@ -39,23 +44,23 @@ bool KnownShare::isGround(double x, double y) const {
   return m_world.at({x, y, z}).state == PointTruth::State::Free;
 }
 
-/** What is looked for and stands in a column. */
-ClassId KnownShare::thingAt(Column c) const {
+/** Which of the things stands in a column. */
+ClassId KnownShare::thingAt(Column c, const std::set<ClassId>& things) const {
   const double x = centerOf(c.x), y = centerOf(c.y), ground = m_world.groundHeight(x, y);
   for (double up = kFrom; up < kTo; up += kStep) {
     const PointTruth truth = m_world.at({x, y, ground + up}, m_map.getResolution() / 2);
-    if (m_classes.count(truth.id) > 0) return truth.id;
+    if (things.count(truth.id) > 0) return truth.id;
   }
   return semantic_types::kNoClass;
 }
 
-void KnownShare::findThings() {
+void KnownShare::findThings(const std::set<ClassId>& things) {
   const int low = semantic_octree::keyOf(-m_far, m_map.getResolution()),
             high = semantic_octree::keyOf(m_far, m_map.getResolution());
   std::map<Column, ClassId> columns;
   for (int x = low; x < high; ++x)
     for (int y = low; y < high; ++y)
-      if (const ClassId id = thingAt({x, y})) columns[{x, y}] = id;
+      if (const ClassId id = thingAt({x, y}, things)) columns[{x, y}] = id;
   while (!columns.empty()) m_things.push_back(take(columns.begin()->first, columns));
 }
 
@@ -88,16 +93,15 @@ KnownShare::Thing KnownShare::take(Column first, std::map<Column, ClassId>& colu
 }
 
 double KnownShare::share() {
-  if (m_all > 0) {
-    std::set<Column> changed;
-    for (const auto& tile : m_follower.tiles().tiles) changed.insert({tile[0], tile[1]});
-    for (const Column& first : changed) lookAtTile(first);
-    return static_cast<double>(m_known.size()) / m_all;
-  }
+  std::set<Column> changed;
+  for (const auto& tile : m_follower.tiles().tiles) changed.insert({tile[0], tile[1]});
+  for (const Column& first : changed) lookAtTile(first);
   const auto known = std::count_if(m_things.begin(), m_things.end(),
                                    [&](const Thing& thing) { return isKnown(thing); });
-  return static_cast<double>(known) /
-         static_cast<double>(std::max<std::size_t>(1, m_things.size()));
+  const double ofGround = static_cast<double>(m_known.size()) / std::max(1, m_all);
+  if (m_things.empty()) return ofGround;
+  const double ofThings = static_cast<double>(known) / static_cast<double>(m_things.size());
+  return m_all > 0 ? (ofGround + ofThings) / 2 : ofThings;
 }
 
 void KnownShare::lookAtTile(Column first) {

@@ -11,13 +11,13 @@
 
 namespace drive_study {
 
-/** How much of what is looked for a map has right: columns of ground that nothing stands on. If
- * there is no ground of these classes, things: one is known if a quarter of its outer columns is,
- * which is one side of it. */
+/** How much of what is looked for a map has right: columns of ground that nothing stands on, and
+ * things: one is known if a quarter of its outer columns is, which is one side of it. */
 class KnownShare {
  public:
   KnownShare(semantic_octree::SemanticOcTree& map, const synthetic_world::World& world,
              const ExploreTask& task);
+  /** Of ground or things; the mean of both, if weights ask for both. */
   double share();
   /** How many columns of ground or things are right. Ground is as in the last share(). */
   long columns() const;
@@ -32,8 +32,8 @@ class KnownShare {
 
   bool isWithin(double x, double y) const;
   bool isGround(double x, double y) const;
-  ClassId thingAt(Column c) const;
-  void findThings();
+  ClassId thingAt(Column c, const std::set<ClassId>& things) const;
+  void findThings(const std::set<ClassId>& things);
   Thing take(Column first, std::map<Column, ClassId>& columns) const;
   void lookAtTile(Column first);
   bool hasRightGround(Column c) const;

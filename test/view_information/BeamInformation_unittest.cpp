@@ -359,7 +359,8 @@ TEST(GrowthOfTree, liesBetweenItsBounds) {
     Looking looking{model, question, draw.cells(2 + draw.below(5), K)};
     const std::size_t seen = 1 + static_cast<std::size_t>(draw.below(3)) % looking.cells.size();
     const double growth = looking.expectedAfter(0, seen) - objectiveOf(question, looking.cells);
-    const Bounds bounds = growthOfTree(question, model, looking.cells, looking.reached(seen));
+    const Bounds bounds = growthOfTree(question, model, looking.cells, looking.reached(seen),
+                                       std::vector<double>(looking.cells.size(), 1));
     ASSERT_GE(growth, bounds.lower - 1e-12) << "trial " << trial;
     ASSERT_LE(growth, bounds.upper + 1e-12) << "trial " << trial;
   }
@@ -371,8 +372,22 @@ TEST(GrowthOfTree, hasBoundsNearEachOtherWhereTheTreeIsLarge) {
   const BeamModel model = draw.model(K);
   const Question question(weightsOf({tree_abstraction::relevant("a", 1, {1, 2})}), K);
   const Looking looking{model, question, draw.cells(200, K)};
-  const Bounds bounds = growthOfTree(question, model, looking.cells, looking.reached(12));
+  const Bounds bounds = growthOfTree(question, model, looking.cells, looking.reached(12),
+                                     std::vector<double>(looking.cells.size(), 1));
   EXPECT_LT(bounds.upper - bounds.lower, 0.05 * bounds.upper);
+}
+
+TEST(GrowthOfTree, ofACellThatStandsForThreeIsThatOfThree) {
+  constexpr int K = 3;
+  Draw draw(13);
+  const BeamModel model = draw.model(K);
+  const Question question(weightsOf({tree_abstraction::relevant("a", 1, {1, 2})}), K);
+  const auto cells = draw.cells(2, K);
+  const Bounds once = growthOfTree(question, model, cells, {0.4, 0.7}, {3, 1});
+  const Bounds each = growthOfTree(question, model, {cells[0], cells[0], cells[0], cells[1]},
+                                   {0.4, 0.4, 0.4, 0.7}, {1, 1, 1, 1});
+  EXPECT_NEAR(once.lower, each.lower, 1e-15);
+  EXPECT_NEAR(once.upper, each.upper, 1e-15);
 }
 
 TEST(BeamInformation, ofWhatIsIrrelevantIsALoss) {

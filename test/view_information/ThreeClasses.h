@@ -1,5 +1,6 @@
 #pragma once
 #include <semantic_types/ClassTable.h>
+#include <tree_abstraction/AbstractionWeights.h>
 
 /** The classes of these tests, and the edge of their voxels. */
 enum : semantic_types::ClassId { kRoad = 1, kGrass, kWall };
@@ -9,4 +10,10 @@ inline semantic_types::ClassTable threeClasses() {
   semantic_types::ClassTable table;
   for (const char* name : {"road", "grass", "wall"}) table.add(name, {});
   return table;
+}
+
+inline tree_abstraction::AbstractionWeights relevantOnly(semantic_types::ClassId id) {
+  tree_abstraction::AbstractionWeights weights;
+  weights.terms = {tree_abstraction::relevant("relevant", 1, {id})};
+  return weights;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace view_information {
 
@@ -102,19 +103,20 @@ Bounds informationOfViews(const std::vector<std::vector<double>>& reached,
  * distance, a sum over cells, as what moves them is not correlated. */
 Bounds growthOfTree(const Question& question, const BeamModel& model,
                     const std::vector<std::vector<double>>& beliefs,
-                    const std::vector<double>& reached) {
-  const double share = 1.0 / static_cast<double>(beliefs.size());
+                    const std::vector<double>& reached, const std::vector<double>& counts) {
+  const double share = 1 / std::accumulate(counts.begin(), counts.end(), 0.0);
   std::vector<double> mean(static_cast<std::size_t>(question.numClasses()) + 1, 0);
-  for (const std::vector<double>& p : beliefs)
-    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += share * p[k];
+  for (std::size_t i = 0; i < beliefs.size(); ++i)
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += share * counts[i] * beliefs[i][k];
   double told = 0;
   Bounds moved;
   for (std::size_t i = 0; i < beliefs.size(); ++i) {
     const double* p = beliefs[i].data();
-    told += share * reached[i] * question.information(model, p);
+    const double looks = counts[i] * reached[i];
+    told += share * looks * question.information(model, p);
     for (int w = 0; w <= question.numClasses(); ++w) {
       const Bounds far = question.distance(model.after(w, p).data(), p, mean.data());
-      const double weight = share * share * reached[i] * model.probability(w, p);
+      const double weight = share * share * looks * model.probability(w, p);
       moved.lower += weight * far.lower, moved.upper += weight * far.upper;
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <utility>
 
 namespace view_information {
@@ -13,7 +14,6 @@ using semantic_octree::TileChange;
 namespace {
 
 constexpr std::uint16_t kUnknown = 65535;
-constexpr std::uint16_t kMinus = 0x8000;  // of a float's upper half
 constexpr float kPassUnits = 65534;
 constexpr std::uint16_t kFree = 32767;  // pass: more is free
 constexpr int kHalf = 256;              // voxels
@@ -85,8 +85,7 @@ class GainField::Surroundings {
     const Voxel& v = stored(x, y, z);
     if (v.pass == kUnknown) return unknown(x, y, z);
     Gain gain = unpacked(v);
-    if (m_knowsAir && std::signbit(gain.gain)) gain.gain = 0;
-    gain.gain = std::abs(gain.gain);
+    if (m_knowsAir && v.pass > kFree) gain.gain = 0;
     return gain;
   }
 
@@ -141,8 +140,7 @@ TileChange GainField::update() {
 }
 
 /** Most leaves are one of few: what was computed last for one with the same hash is kept. Classes
- * of one kind are alike. The gain of what has no class record and is free gets a minus: who knows
- * that it is air asks no more of it. */
+ * of one kind are alike. */
 const GainField::Computed& GainField::computed(const SemanticOcTreeNode& leaf) {
   Computed now;
   now.logOdds = leaf.getLogOdds();
@@ -164,8 +162,6 @@ const GainField::Computed& GainField::computed(const SemanticOcTreeNode& leaf) {
     std::vector<double> p(m_nothingKnown.size());
     belief.distribution(m_map.numClasses(), p.data());
     now.known = static_cast<float>(m_question.divergence(p.data(), m_nothingKnown.data()));
-  } else if (!now.hasRecord) {
-    now.voxel.gain |= kMinus;
   }
   return last = now;
 }
@@ -230,8 +226,7 @@ const GainField::Half* GainField::find(int x, int y, int z) const {
 std::optional<Gain> GainField::at(const octomap::OcTreeKey& key) const {
   const Voxel& v = View::of(find(key[0], key[1], key[2])).at(key[0], key[1], key[2]);
   if (v.pass == kUnknown) return {};
-  const Gain gain = unpacked(v);
-  return Gain{gain.pass, std::abs(gain.gain)};
+  return unpacked(v);
 }
 
 template <class Visit>
@@ -262,18 +257,19 @@ SectorGains GainField::sweep(const ViewTemplate& view, UnknownPrior& prior,
 Bounds GainField::growth(const ViewTemplate& view, UnknownPrior& prior,
                          const octomap::OcTreeKey& from, int sector) const {
   std::vector<std::vector<double>> beliefs;
-  std::vector<double> reach;
+  std::vector<double> reach, counts;
   lookAround(view, prior, from, [&](const ViewTemplate::Voxel& v, float reached, float) {
     if (!view.sees(v, sector)) return;
-    reach.push_back(static_cast<double>(view.weight(v) * reached));
+    reach.push_back(static_cast<double>(reached));
+    counts.push_back(static_cast<double>(view.weight(v)));
     beliefs.push_back(m_nothingKnown);
     const auto leaf =
         m_map.search(semantic_octree::octomapKey(from[0] + v.x, from[1] + v.y, from[2] + v.z));
     if (leaf) m_map.belief(leaf).distribution(m_map.numClasses(), beliefs.back().data());
   });
   if (reach.empty()) return {};
-  const Bounds ofEqualShares = growthOfTree(m_question, m_model, beliefs, reach);
-  const auto cells = static_cast<double>(reach.size());
+  const Bounds ofEqualShares = growthOfTree(m_question, m_model, beliefs, reach, counts);
+  const double cells = std::accumulate(counts.begin(), counts.end(), 0.0);
   return {cells * ofEqualShares.lower, cells * ofEqualShares.upper};
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr int kMostVoxels = 1000;  // of a range
 /** Beams of a template, above each other, if the shape names none, and at most all around. */
 constexpr double kApart = 2;  // degrees
-constexpr int kColumns = 3 * ViewTemplate::kHeadings;
+constexpr int kColumns = 2 * ViewTemplate::kHeadings;
 
 using Beam = std::vector<Offset>;
 

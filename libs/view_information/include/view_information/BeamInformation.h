@@ -111,10 +111,10 @@ Bounds informationOfNet(const std::vector<TreeCell>& cells,
  * bound has what is told of each cell; how far the mean over all cells moves, which is less, is not
  * taken off.
  * \param beliefs K + 1 probabilities of each cell, as the map has them \param reached P(reached) of
- * each */
+ * each \param counts for how many cells of the tree each stands */
 Bounds growthOfTree(const Question& question, const BeamModel& model,
                     const std::vector<std::vector<double>>& beliefs,
-                    const std::vector<double>& reached);
+                    const std::vector<double>& reached, const std::vector<double>& counts);
 /** (f): what several views tell together. \param reached P(reached) by view and cell
  * \param values of each cell */
 Bounds informationOfViews(const std::vector<std::vector<double>>& reached,
