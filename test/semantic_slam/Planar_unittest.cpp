@@ -303,6 +303,28 @@ TEST(Planar, aPieceThatALaterLossLeavesBehindIsFoundInTheEnd) {
   EXPECT_EQ(slam.report().joined, 2u);
 }
 
+TEST(Planar, othersComeToThePartThatAMapHolds) {
+  const Recording whole = recordingOf("village", 1, laserOf(), kWhole, kFlat);
+  SemanticOcTree map(0.1, synthetic_world::classTable());
+  for (std::size_t i = 190; i < 215; ++i)
+    map.insert(whole.clouds[i], whole.truth[i] * kRobotLaser, {});
+  Recording r = recordingOf("village", 1, laserOf(), 120, kFlat);
+  const Eigen::Isometry3d T = whole.truth[187] * r.odometry.back().inverse();
+  for (Eigen::Isometry3d& pose : r.odometry) pose = T * pose;
+  append(r, whole, 187, whole.truth.size());
+  const auto round = static_cast<std::ptrdiff_t>(r.truth.size());
+  append(r, whole, 15, 50);  // where it began
+  r.clouds.erase(r.clouds.begin() + round);
+  for (auto* poses : {&r.truth, &r.odometry}) poses->erase(poses->begin() + round);
+  Slam slam({});
+  slam.setReference(map);
+  addAll(slam, r, kRobotLaser);
+  slam.finish();
+  EXPECT_GT(slam.report().referenced, 3u);
+  EXPECT_EQ(slam.report().joined, 1u);
+  EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.3);
+}
+
 TEST(Planar, logsOfTwoPlacesAreSaidToBeApart) {
   Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
   append(r, recordingOf("park", 4, laserOf(), kDriven, kFlat), 0, 60);

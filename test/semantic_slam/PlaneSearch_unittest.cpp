@@ -189,6 +189,27 @@ TEST(PlaneSearch, findsARobotWhereMuchIsAlike) {
   EXPECT_TRUE(found->isAlone);
 }
 
+TEST(PlaneSearch, givesUpAfterSoManyLooks) {
+  Uniform uniform(2);
+  const PlanePoints bushes = field(uniform, 2000, 10);
+  const PlanePoints scan = seenFrom({-3, 4, 96 * kStep}, bushes, 4);
+  const PlaneSearch search(bushes, kCell);
+  const auto within = [&](std::size_t looks) {
+    return search.find(scan, {0, 0, 0}, {10, M_PI}, 0.65, looks);
+  };
+  const auto all = within(PlaneSearch::kMostLooks);
+  ASSERT_TRUE(all && all->isAlone);
+  EXPECT_FALSE(within(10'000));
+  bool isFound = false;
+  for (std::size_t looks = 10'000; looks < PlaneSearch::kMostLooks; looks *= 2) {
+    const auto found = within(looks);
+    EXPECT_GE(found.has_value(), isFound) << "more looks find no less";
+    isFound = found.has_value();
+    EXPECT_TRUE(!isFound || found->pose == all->pose);
+  }
+  EXPECT_TRUE(isFound);
+}
+
 TEST(PlaneSearch, takesNoPlaceForTheOnlyOneWhereMillionsFit) {
   PlanePoints full;
   for (int x = -200; x < 200; ++x)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <set>
 #include <unordered_map>
@@ -15,10 +16,6 @@ constexpr int kBest = 255;
 /** A point is blurred by a Gaussian of so many cells, and drawn to twice that. */
 constexpr double kBlur = 1.2;
 constexpr int kReach = 3;
-/** Points that one search looks up at most: several times what a quarter of a kilometer of trees
- * and fences takes where nothing fits. Whole levels, which are looked up in rows, may take as long
- * again. */
-constexpr std::size_t kMostLooks = 3'000'000'000;
 /** A level of which more than one square in so many may hold a fit is left for the next finer one:
  * in rows, squares take so much less time each than alone. Below the finest level that is looked at
  * as a whole there would be too many to remember. */
@@ -115,10 +112,12 @@ void PlaneSearch::pool() {
 class PlaneSearch::Search {
  public:
   Search(const PlaneSearch& grid, const PlanePoints& scan, const Eigen::Vector3d& guess,
-         const Window& window)
+         const Window& window, std::size_t mostLooks)
       : m_grid(grid),
         m_radius(static_cast<int>(std::ceil(window.radius / grid.m_cell))),
-        m_angles(static_cast<int>(std::ceil(window.angle / kAngleStep))) {
+        m_angles(static_cast<int>(std::ceil(window.angle / kAngleStep))),
+        m_most(mostLooks / scan.size()),
+        m_left(m_most) {
     for (int a = -m_angles; a <= m_angles; ++a) {
       const Eigen::Rotation2Dd turn(guess[2] + a * kAngleStep);
       auto& cells = m_cells.emplace_back();
@@ -132,21 +131,24 @@ class PlaneSearch::Search {
 
   using Places = std::set<std::array<int, 3>>;
 
-  /** \param least a score that has to be exceeded \param known places that do not count
+  /** \param least a score that has to be exceeded \param known places that do not count; if there
+   * are any, another one is as good as the best
    * \return with a level of kNone if there is none, of kGaveUp if that takes too long to find out
    */
-  Candidate best(int least, const Places& known = {}) const {
+  Candidate best(int least, const Places& known = {}) {
     Candidate best{kNone, 0, 0, 0, least};
-    std::size_t left = kMostLooks / (4 * m_cells.front().size());  // of expansions
-    for (std::vector<Candidate> open = coarsest(least, left + 1); !open.empty();) {
+    if (least < m_coarsestLeast) m_coarsest = coarsest(m_coarsestLeast = least);
+    for (std::vector<Candidate> open = m_coarsest; !open.empty();) {
       const Candidate c = open.back();
       open.pop_back();
       if (c.score <= best.score) continue;
       if (c.level == 0) {
         if (known.count({c.angle, c.x, c.y}) == 0) best = c;
+        if (!known.empty() && best.level == 0) break;
         continue;
       }
-      if (left-- == 0) return {kGaveUp, 0, 0, 0, least};
+      if (m_left < 4) return {kGaveUp, 0, 0, 0, least};
+      m_left -= 4;
       expand(c, best.score, open);
     }
     return best;
@@ -154,7 +156,7 @@ class PlaneSearch::Search {
   /** Another place is one that paths lead to from the best only through places that fit worse. A
    * corridor without doors is one place. Where that takes too long to find out, there is another.
    */
-  bool isAlone(const Candidate& place) const {
+  bool isAlone(const Candidate& place) {
     const int least = place.score - noiseOf(place) - 1;
     const auto known = around(place, least);
     return known && best(least, *known).level == kNone;
@@ -166,12 +168,13 @@ class PlaneSearch::Search {
  private:
   static bool isWorse(const Candidate& a, const Candidate& b) { return a.score < b.score; }
 
-  /** \param most as many of the best as a search gets to before it gives up */
-  std::vector<Candidate> coarsest(int least, std::size_t most) const {
+  /** As many of the best as a search gets to before it gives up. */
+  std::vector<Candidate> coarsest(int least) const {
+    const std::size_t most = m_most / 4 + 1;
     std::vector<Candidate> open;
     std::vector<int> scores;
     int lowest = least, finest = kFinest;  // lowest that is remembered
-    while (finest < kLevels - 1 && looksAtAll(finest) / kRows > kMostLooks) ++finest;
+    while (finest < kLevels - 1 && looksAtAll(finest) / kRows > m_most) ++finest;
     for (int angle = 0; angle <= 2 * m_angles; ++angle) {
       int level = kLevels;
       std::ptrdiff_t above = 0;
@@ -198,7 +201,7 @@ class PlaneSearch::Search {
   }
   std::size_t looksAtAll(int level) const {
     const auto n = static_cast<std::size_t>(numSquares(level));
-    return n * n * m_cells.size() * m_cells.front().size();
+    return n * n * m_cells.size();
   }
   /** Along each axis. */
   int numSquares(int level) const { return (2 * m_radius >> level) + 1; }
@@ -265,10 +268,10 @@ class PlaneSearch::Search {
   }
   /** The places that exceed a score, from one of them to its neighbors, and so on.
    * \return nothing if they are too many */
-  std::optional<Places> around(const Candidate& place, int least) const {
+  std::optional<Places> around(const Candidate& place, int least) {
     Places known, seen{{place.angle, place.x, place.y}};
     std::vector<std::array<int, 3>> open(seen.begin(), seen.end());
-    const std::size_t most = std::min(kMostLooks / m_cells.front().size(), kMostAround);
+    const std::size_t most = std::min(m_left, kMostAround);
     while (!open.empty()) {
       const auto from = open.back();
       open.pop_back();
@@ -284,6 +287,7 @@ class PlaneSearch::Search {
         open.push_back(to);
       }
     }
+    m_left -= seen.size();
     return known;
   }
   int scoreOf(int x, int y) const {
@@ -293,13 +297,16 @@ class PlaneSearch::Search {
 
   const PlaneSearch& m_grid;
   int m_radius, m_angles;
+  std::size_t m_most, m_left;                             ///< squares that may be looked at
   std::vector<std::vector<std::pair<int, int>>> m_cells;  ///< of the scan, turned by each angle
+  std::vector<Candidate> m_coarsest;
+  int m_coarsestLeast = INT_MAX;
 };
 
 auto PlaneSearch::find(const PlanePoints& scan, const Eigen::Vector3d& guess, const Window& window,
-                       double least) const -> std::optional<Found> {
+                       double least, std::size_t mostLooks) const -> std::optional<Found> {
   if (scan.empty() || m_width == 0) return std::nullopt;
-  const Search search(*this, scan, guess, window);
+  Search search(*this, scan, guess, window, mostLooks);
   const double highest = kBest * static_cast<double>(scan.size());
   const auto best = search.best(static_cast<int>(least * highest));
   if (best.level < 0) return std::nullopt;

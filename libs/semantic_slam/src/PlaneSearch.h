@@ -36,9 +36,14 @@ class PlaneSearch {
   };
   /** \param guess x, y (m) and heading (radians) of the scan
    * \param least share of the points' highest score that a fit has at least
-   * \return nothing if none fits so well */
+   * \param mostLooks points that are looked up before it gives up. Whole levels, which are looked
+   * up in rows, may take as long again. \return nothing if none fits so well, or it gave up */
   std::optional<Found> find(const PlanePoints& scan, const Eigen::Vector3d& guess,
-                            const Window& window, double least) const;
+                            const Window& window, double least,
+                            std::size_t mostLooks = kMostLooks) const;
+
+  /** Several times what a quarter of a kilometer of trees and fences takes where nothing fits. */
+  static constexpr std::size_t kMostLooks = 3'000'000'000;
 
  private:
   struct Candidate {

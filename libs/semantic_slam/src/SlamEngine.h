@@ -11,6 +11,9 @@ namespace semantic_slam {
 
 /** Share of a stretch's points where the place that it is compared with has some, at least. */
 constexpr double kCovered = 0.3;
+/** Points that searches at a keyframe look up at most while the robot drives: half a second of a
+ * desktop's core, so that scans need not wait. At the end each search has all that it needs. */
+constexpr std::size_t kLiveLooks = 300'000'000;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);
 /** x, y (m) and heading (radians). */
@@ -137,16 +140,19 @@ class SlamEngine {
   std::vector<PoseEdge> findPart(const Part& others, const Part& part);
   struct Places {
     Part keyframes;
-    PlaneSearch search;  ///< of what they saw
+    std::vector<Pose> poses;  ///< of all keyframes
+    PlaneSearch search;       ///< of what they saw
     Eigen::Vector3d middle;
     PlaneSearch::Window window;  ///< all of it
   };
-  Places placesOf(const Part& part) const;
+  /** The last ones are kept while none has moved. */
+  const Places& placesOf(const Part& part);
   using Stretch = std::pair<std::size_t, std::size_t>;  ///< first and last keyframe
   /** Each has half of its keyframes in common with the next one. */
   static std::vector<Stretch> stretchesOf(const Part& part);
   /** Where what a stretch saw fits best. */
-  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes);
+  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes,
+                                      std::size_t mostLooks = PlaneSearch::kMostLooks);
 
   // --- Loops and the reference ---
   bool closeLoops();
@@ -218,6 +224,7 @@ class SlamEngine {
   std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece
   std::vector<std::size_t> m_tears;  ///< first keyframes of all pieces but the first, in order
   std::optional<PoseEdge> m_pendingPiece;
+  std::optional<Places> m_places;
   double m_nextJoin = 0;                        ///< m of the piece's way
   int m_notFound = 0;                           ///< pieces before it, one after the other
   Reference m_reference;                        ///< none: there is no map

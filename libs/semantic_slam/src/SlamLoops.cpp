@@ -156,7 +156,7 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
            wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
       ++last;
     return PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
-        .find(upright(level.cloud), guess, window, kLeastScore);
+        .find(upright(level.cloud), guess, window, kLeastScore, kLiveLooks / kMostPlaces);
   };
   const PlaneSearch::Window whole = windowAfter(way);
   const double near = kNearWindow * m_scale.gridCell;

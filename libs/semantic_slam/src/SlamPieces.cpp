@@ -117,8 +117,8 @@ bool SlamEngine::joinPiece() {
     return false;
   }
   const std::size_t length = std::min(newest - *m_piece, kSearched);
-  const Places places = placesOf(all[own == all.begin()]);
-  const auto found = findStretch(places, {newest - length, newest});
+  const Places& places = placesOf(all[own == all.begin()]);
+  const auto found = findStretch(places, {newest - length, newest}, kLiveLooks);
   if (!found) return false;
   std::vector<PoseEdge> finds{*found};
   if (m_pendingPiece && agree(*m_pendingPiece, *found)) finds.push_back(*m_pendingPiece);
@@ -131,15 +131,15 @@ bool SlamEngine::joinPiece() {
 }
 
 bool SlamEngine::joinParts() {
-  bool moved = false, isMore = true;
-  while (std::exchange(isMore, false)) {  // what was not found before may be now
-    auto all = parts();
-    for (std::size_t i = 1; i < all.size();)
-      if (join(all[i], findPart(all[0], all[i])))
-        moved = isMore = true, all = parts();  // the next one has its place
-      else
-        ++i;
-  }
+  bool moved = false;
+  auto all = parts();
+  for (std::size_t i = 1; i < all.size(); ++i)
+    if (join(all[i], findPart(all[0], all[i]))) {
+      moved = true;
+      all = parts();
+      i = 0;  // what was not found before may be now
+    }
+  m_places.reset();
   return moved;
 }
 
@@ -170,6 +170,7 @@ bool SlamEngine::join(const Part& part, const std::vector<PoseEdge>& finds) {
   m_edges.insert(m_edges.end(), finds.begin(), finds.end());
   ++m_report.loops;
   m_report.twofold = 0;
+  m_places.reset();
   optimizePoses();
   return true;
 }
@@ -186,7 +187,7 @@ auto SlamEngine::stretchesOf(const Part& part) -> std::vector<Stretch> {
 }
 
 std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part) {
-  const Places places = placesOf(others);
+  const Places& places = placesOf(others);
   const std::vector<Stretch> stretches = stretchesOf(part);
   std::vector<PoseEdge> finds, most;
   for (const Stretch& stretch : stretches)
@@ -200,7 +201,12 @@ std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part)
   return most;
 }
 
-auto SlamEngine::placesOf(const Part& part) const -> Places {
+auto SlamEngine::placesOf(const Part& part) -> const Places& {
+  const auto stays = [this](std::size_t k) {
+    return m_poses[k].matrix() == m_places->poses[k].matrix();
+  };
+  if (m_places && m_places->keyframes == part && std::all_of(part.begin(), part.end(), stays))
+    return *m_places;
   const double cell = kCells * m_scale.gridCell;
   PlanePoints all;
   Eigen::AlignedBox2d box;
@@ -211,13 +217,15 @@ auto SlamEngine::placesOf(const Part& part) const -> Places {
       box.extend(p);
     }
   const Eigen::Vector2d middle = box.center();
-  return {part,
-          PlaneSearch(all, cell),
-          {middle.x(), middle.y(), 0},
-          {box.sizes().maxCoeff() / 2, M_PI}};
+  return m_places.emplace(Places{part,
+                                 m_poses,
+                                 PlaneSearch(all, cell),
+                                 {middle.x(), middle.y(), 0},
+                                 {box.sizes().maxCoeff() / 2, M_PI}});
 }
 
-std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes) {
+std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes,
+                                                std::size_t mostLooks) {
   const std::size_t last = keyframes.second;
   const Seen stretch = pointsOf(keyframes.first, last, last);
   const PlanePoints searched =
@@ -225,7 +233,7 @@ std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stre
   PlanePoints some;
   const std::size_t every = 1 + searched.size() / kMostPoints;
   for (std::size_t i = 0; i < searched.size(); i += every) some.push_back(searched[i]);
-  const auto found = places.search.find(some, places.middle, places.window, kFoundScore);
+  const auto found = places.search.find(some, places.middle, places.window, kFoundScore, mostLooks);
   m_report.twofold += found && !found->isAlone;
   if (!found || !found->isAlone) return std::nullopt;
   const Pose T_map = poseOfFlat(found->pose);

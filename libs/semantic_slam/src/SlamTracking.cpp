@@ -313,9 +313,10 @@ PlaneSearch::Window SlamEngine::windowAround(const Pose& T_step, const Matrix6& 
   const Matrix6 first = MotionNoise(!m_hasOdometry).information(T_step);
   double way = kFar / std::sqrt(std::min(information(0, 0), first(0, 0))),
          turn = kFar / std::sqrt(std::min(information(5, 5), first(5, 5)));
-  if (!m_hasOdometry) {  // it may have stopped
-    way += wayOf(T_step);
-    turn += turnOf(T_step);
+  // It may have stopped, or its wheels stand while it goes on.
+  if (!m_hasOdometry || m_T_odometry_step.isApprox(Pose::Identity())) {
+    way += wayOf(goingOn());
+    turn += turnOf(goingOn());
   }
   way *= 1 + m_lostInRow;
   turn *= 1 + m_lostInRow;
