@@ -321,9 +321,16 @@ void setLeaving() { std::set_terminate(leaveUncaught); }
 /** Before all libraries' own beginnings. */
 [[gnu::section(".preinit_array"), gnu::used]] void (*const atFirst)() = setLeaving;
 
+/** Begin and end of a message that quotes a file, whose words may be as long as the file. */
+std::string shortened(std::string text) {
+  constexpr std::size_t kEnd = 1000;
+  if (text.size() > 2 * kEnd) text.replace(kEnd, text.size() - 2 * kEnd, " ... ");
+  return text;
+}
+
 int parseAndRun(CLI::App& app, int argc, char** argv, const std::function<int()>& program) {
   const auto complain = [&app](const std::string& message) {
-    std::cerr << app.get_name() << ": " << strict_files::printable(message) << std::endl;
+    std::cerr << app.get_name() << ": " << strict_files::printable(shortened(message)) << std::endl;
   };
   try {
     app.parse(argc, argv);

@@ -14,8 +14,8 @@
 #include <opencv2/core.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -226,16 +226,13 @@ Eigen::Isometry3d readLidarToCamera(const fs::path& file) {
 
 template <typename T>
 std::vector<T> readBinary(const fs::path& file, std::size_t valuesEach) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be opened");
-  const auto bytes = fs::file_size(file);
-  if (bytes == 0 || bytes % (valuesEach * sizeof(T)) != 0)
-    throw std::runtime_error(file.string() + ": " + std::to_string(bytes) +
+  const std::string bytes = strict_files::readText(file);
+  if (bytes.empty() || bytes.size() % (valuesEach * sizeof(T)) != 0)
+    throw std::runtime_error(file.string() + ": " + std::to_string(bytes.size()) +
                              " bytes, expected a multiple of " +
                              std::to_string(valuesEach * sizeof(T)));
-  std::vector<T> values(bytes / sizeof(T));
-  stream.read(reinterpret_cast<char*>(values.data()), bytes);
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
 }
 

@@ -221,14 +221,13 @@ std::vector<strict_files::TextLine> pointsOf(const Cli& cli) {
   return points;
 }
 
-/** \throw std::runtime_error naming all tiles that cannot be read. */
+/** Names the tiles that cannot be read. \throw std::runtime_error there are some. */
 void checkTiles(semantic_octree::MapFolder& folder) {
   const std::vector<std::string> problems = folder.problems();
   if (problems.empty()) return;
-  std::string text =
-      "tiles that cannot be read (the others can, as by --at): " + std::to_string(problems.size());
-  for (const std::string& problem : problems) text += "\n  " + problem;
-  throw std::runtime_error(text);
+  for (const std::string& problem : problems) std::cerr << "  " << problem << '\n';
+  throw std::runtime_error("tiles that cannot be read (the others can, as by --at): " +
+                           std::to_string(problems.size()));
 }
 
 int run(const Cli& cli) {

@@ -1,5 +1,6 @@
 // Bags of ROS 2, written by the tests, become rawlogs.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <cmath>
@@ -348,6 +349,8 @@ TEST_F(Rosbag2, whatIsWrongIsNamed) {
                "is no bag that can be read"));
   EXPECT_TRUE(
       contains(messageOf("--no-labels " + quoted(folder / "gone.mcap"), folder), "no such bag"));
+  ASSERT_EQ(mkfifo((folder / "pipe.db3").c_str(), 0600), 0);
+  EXPECT_TRUE(contains(messageOf("--no-labels " + quoted(folder / "pipe.db3"), folder), "a pipe"));
 }
 
 TEST_F(Rosbag2, aChunkThatAnnouncesMoreThanItHoldsTakesNoMemory) {

@@ -145,6 +145,9 @@ TEST_F(SemanticMapInfo, theDistributionAtAPointHasAllClassesAndFreeSpace) {
 TEST_F(SemanticMapInfo, linesThatAreNoPointsAreRefusedByNumber) {
   for (const char* line : {"1 2", "1 2 3 4", "1 2 x", "nan 0 0", "inf 0 0"})
     expectRefusal(query(std::string("0 0 0\n") + line + "\n"), {"points.txt:2", line});
+  const ProgramRun ofLong = query("1 2 " + std::string(1000000, 'x'));
+  expectRefusal(ofLong, {"points.txt:1", "x ... x"});
+  EXPECT_LT(ofLong.errors.size(), 3000u);
 }
 
 TEST_F(SemanticMapInfo, missingFilesAreRefusedByName) {

@@ -236,6 +236,23 @@ TEST(MovedMap, refusesWhatIsNotAPoseOrLeadsOutside) {
   EXPECT_THROW(moved(map, T), std::invalid_argument);
 }
 
+TEST(MovedMap, andCroppedRefuseToCutALeafOfATownIntoVoxels) {
+  octomap::OcTree occupancy(kMergedResolution);
+  occupancy.updateNode(octomap::point3d(-1, -1, -1), true);
+  octomap::OcTreeNode* node = occupancy.getRoot();
+  for (const unsigned child : {7, 0, 0}) node = occupancy.createNodeChild(node, child);
+  node->setLogOdds(1);
+  occupancy.updateInnerOccupancy();
+  const SemanticOcTree map = fromOcTree(occupancy, numberedClasses(5), {});
+  const Eigen::Isometry3d turn(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()));
+  EXPECT_THROW(moved(map, turn), std::length_error);
+  const auto part = [&](double x, double y, double z) {
+    return cropped(map, {Eigen::Vector3d(-9, -9, -9), Eigen::Vector3d(x, y, z)});
+  };
+  EXPECT_THROW(part(1e4, 1e4, 1.1), std::length_error);
+  EXPECT_GT(part(1e4, 1e4, 1638.5).size(), 8u);
+}
+
 TEST(ImportedOccupancy, isTheOccupancyWithinTheLimits) {
   octomap::OcTree occupancy(kMergedResolution);
   for (const PosedCloud& scan : scans(5, 5)) {

@@ -4,9 +4,11 @@
 #include <strict_files/StrictYaml.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
+#include <sys/stat.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -36,6 +38,13 @@ TEST_F(TextFile, thatCannotBeReadIsNamed) {
   EXPECT_EQ(errorOf([] { readText("/nowhere/a.txt"); }), "/nowhere/a.txt: cannot be read");
   const std::string path = folder.path().string();
   EXPECT_EQ(errorOf([&] { readText(path); }), path + ": cannot be read");
+  const std::string noFile = ": it is no file, but a device or a pipe", pipe = folder / "pipe";
+  EXPECT_EQ(errorOf([] { readText("/dev/zero"); }), "/dev/zero" + noFile);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(errorOf([&] { readText(pipe); }), pipe + noFile);
+  const std::string sparse = folder.write("sparse", "");
+  std::filesystem::resize_file(sparse, std::uintmax_t{1} << 42);
+  EXPECT_TRUE(contains(errorOf([&] { readText(sparse); }), "sparse: needs 4.4 TB of memory, and "));
 }
 
 TEST(TextLines, leaveOutCommentsBlanksAndLineEndsAndKnowTheirNumber) {

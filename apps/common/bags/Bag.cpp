@@ -63,6 +63,7 @@ class Database {
     sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, static_cast<int>(kMostChunkBytes - 1));
     sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);  // which may have no end
     sqlite3_exec(opened, "PRAGMA cell_size_check = ON", nullptr, nullptr, nullptr);
   }
   void check(int result) const {
@@ -320,6 +321,8 @@ void readBag(const fs::path& bag, const WantsTopic& wants, const TakeMessage& ta
   bool goesOn = true;
   for (const fs::path& file : filesOfBag(bag)) try {
       if (!goesOn) return;
+      if (fs::exists(file) && !fs::is_regular_file(file))
+        throw std::runtime_error("it is no file, but a device or a pipe");
       const auto takeOne = [&](const BagTopic& topic, std::string_view message) {
         return goesOn = take(topic, message);
       };

@@ -124,6 +124,14 @@ std::string pointText(const Eigen::Vector3d& p) {
   return textOf(p.x()) + "," + textOf(p.y()) + "," + textOf(p.z());
 }
 
+/** A result whose borders cut leaves of the map, each of which may be as large as a town: it has no
+ * more cubes than come of a million cut ones, and of what grows with the map. */
+template <class Cursor>
+void fillCut(SemanticOcTree& result, const Cursor& cursor, const SemanticOcTree& map) {
+  const std::uint64_t most = (std::uint64_t{1} << 20) + 64 * std::uint64_t{map.size()};
+  TreeBuilder::fill(result, cursor, TreeBuilder::Merge::AsTheMapDoes, most);
+}
+
 }  // namespace
 
 void copyTo(SemanticOcTree& copy, const SemanticOcTree& map) {
@@ -139,7 +147,7 @@ SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box
                                 pointText(box.max()) + " m is empty, or not a number");
   SemanticOcTree part = emptyLike(map);
   const VoxelBox voxels = voxelsIn(box, map.getResolution());
-  TreeBuilder::fill(part, CropCursor(map.numClasses(), voxels, map.root(), Cube()));
+  fillCut(part, CropCursor(map.numClasses(), voxels, map.root(), Cube()), map);
   return part;
 }
 
@@ -253,7 +261,7 @@ void checkStaysInside(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_
   for (int i = 0; i < 8; ++i) {
     const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
     if (((T_new_old * known.corner(corner)).cwiseAbs().array() > limit).any())
-      throw std::out_of_range("moving a map: it would reach beyond " + std::to_string(limit) +
+      throw std::out_of_range("moving a map: it would reach beyond " + strict_files::textOf(limit) +
                               " m, the border of its 16 levels");
   }
 }
@@ -267,7 +275,7 @@ SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_o
   checkStaysInside(map, T_new_old);
   const Eigen::Isometry3d T = inVoxels(T_new_old.inverse(), map.getResolution());
   const Move move{map, T, T.linear().cwiseAbs()};
-  TreeBuilder::fill(result, MoveCursor(move));
+  fillCut(result, MoveCursor(move), map);
   return result;
 }
 

@@ -1,13 +1,12 @@
 #include <strict_files/StrictYaml.h>
 
 #include <strict_files/IniSection.h>
+#include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -50,10 +49,7 @@ std::string yamlText(const std::string& text) {
 }
 
 StrictYaml::StrictYaml(const std::filesystem::path& file) : m_file(file.string()) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    fail(YAML::Mark::null_mark(), "cannot be read");
-  parse({std::istreambuf_iterator<char>(stream), {}});
+  parse(readText(file));
 }
 
 StrictYaml::StrictYaml(const std::string& text, const std::string& name) : m_file(name) {

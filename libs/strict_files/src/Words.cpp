@@ -1,5 +1,6 @@
 #include <strict_files/Words.h>
 
+#include <strict_files/Memory.h>
 #include <strict_files/OptionList.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
@@ -140,10 +141,22 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 std::string readText(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error(file.string() + ": " + why);
+  };
+  std::error_code none;
+  const auto kind = std::filesystem::status(file, none).type();
+  if (kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::character)
+    refuse("it is no file, but a device or a pipe");  // which may have no end
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))  // a folder can be opened, but not read
-    throw std::runtime_error(file.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(stream), {}};
+  if (!stream || kind != std::filesystem::file_type::regular) refuse("cannot be read");
+  const std::uint64_t size = std::filesystem::file_size(file), left = availableMemory();
+  if (size > left)
+    refuse("needs " + sizeText(size) + " of memory, and " + sizeText(left) + " are left");
+  std::string text(size, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
 }
 
 void writeText(const std::filesystem::path& file, const std::string& text) {

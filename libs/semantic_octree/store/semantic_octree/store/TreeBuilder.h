@@ -2,6 +2,8 @@
 #include <semantic_octree/store/LeafContent.h>
 #include <semantic_octree/store/MapAccess.h>
 
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace semantic_octree {
@@ -16,13 +18,15 @@ class TreeBuilder {
   /** Children that agree. */
   enum class Merge { AsTheMapDoes, Never };
 
-  /** A map in a folder of tiles that is open for writing sends tiles away meanwhile. */
+  /** A map in a folder of tiles that is open for writing sends tiles away meanwhile.
+   * \param mostCubes that get children \throw std::length_error the new map would have more */
   template <typename Cursor>
-  static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes) {
+  static void fill(SemanticOcTree& map, const Cursor& root, Merge merge = Merge::AsTheMapDoes,
+                   std::uint64_t mostCubes = std::numeric_limits<std::uint64_t>::max()) {
     MapAccess::checkMayChange(map);
     MapAccess::tellAll(map);
     NodeStore& store = MapAccess::store(map);
-    TreeBuilder(store, map.pruning(), merge).build(store.root(), root, Cube());
+    TreeBuilder(store, map.pruning(), merge, mostCubes).build(store.root(), root, Cube());
   }
   /** \throw std::invalid_argument a map that is to be filled is not empty, keeps an abstraction, or
    * is of another kind than `like`. */
@@ -33,17 +37,21 @@ class TreeBuilder {
   }
 
  private:
-  TreeBuilder(NodeStore& store, bool pruning, Merge merge)
+  TreeBuilder(NodeStore& store, bool pruning, Merge merge, std::uint64_t mostCubes)
       : m_store(store),
         m_arena(store.arena(0)),
         m_allowsLargeLeaves(pruning),
-        m_merges(pruning && merge == Merge::AsTheMapDoes) {}
+        m_merges(pruning && merge == Merge::AsTheMapDoes),
+        m_cubesLeft(mostCubes) {}
 
   template <typename Cursor>
   void build(Slot& slot, const Cursor& cursor, const Cube& cell) {
     if (!cursor.known()) return;
     if (cursor.isLeaf() && m_allowsLargeLeaves)
       cursor.content().write(m_arena, slot);
+    else if (m_cubesLeft-- == 0)
+      throw std::length_error(
+          "leaves are so large that cutting them makes too many: use coarser voxels");
     else if (cell.depth == Block::kDepth)
       buildBlock(slot, cursor);
     else
@@ -93,6 +101,7 @@ class TreeBuilder {
   NodeStore& m_store;
   NodeArena& m_arena;
   bool m_allowsLargeLeaves, m_merges;
+  std::uint64_t m_cubesLeft;
 };
 
 }  // namespace semantic_octree
