@@ -162,23 +162,22 @@ std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) con
   }
   if (beliefs.empty()) return [has] { return has; };
   const FilterParameters& parameters = map.filterParameters();
-  const bool hasFactors = parameters.classPrior.empty() && (!has.factors.empty() || labelsErr(map));
-  return [has, numLabels, hasFactors, beliefs = std::move(beliefs), labels = *this,
-          accuracy = parameters.accuracy]() mutable {
+  const bool err = !has.factors.empty() || labelsErr(map);
+  return [has, numLabels, err, hasFactors = err && parameters.classPrior.empty(),
+          beliefs = std::move(beliefs), labels = *this, accuracy = parameters.accuracy]() mutable {
     std::sort(beliefs.begin(), beliefs.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
     const LabeledVoxels seen = labels.seenAgain();
     const int numClasses = labels.m_numClasses;
     std::vector<LabelProcess> processes;
     processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit);
-    if (hasFactors)
-      processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit, kLabelsOfMatrix);
-    const double asRight = hasFactors ? 1 - processes[0].leastCorrelation() : 0;
+    if (err) processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit, kLabelsOfMatrix);
+    const double asRight = 1 - processes[0].leastCorrelation();
     CalibrationFit fit;
     for (const auto& [voxel, belief] : beliefs) {
       const std::string& ofVoxel = labels.m_voxels.at(voxel);
       std::vector<double> q = processes[0].classesOf(ofVoxel);
-      if (hasFactors) {
+      if (err) {
         const std::vector<double> right = processes[1].classesOf(ofVoxel);
         for (std::size_t k = 0; k < q.size(); ++k) q[k] += asRight * (right[k] - q[k]);
       }
