@@ -7,6 +7,8 @@
 #include <mrpt/obs/CObservationImage.h>
 #include <mrpt_compat/Images.h>
 #include <semantic_types/ClassTable.h>
+#include <strict_files/IniSection.h>
+#include <strict_files/OptionList.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
@@ -50,7 +52,7 @@ using ImageList = std::map<double, std::filesystem::path>;
 struct DepthCamera {
   mrpt::img::TCamera intrinsics;
   /** Value of a depth image's pixel at one meter. */
-  double depthFactor = 0;
+  double depthFactor = 5000;
 };
 
 /** Reads "time file" lines; the files are relative to the list's folder.
@@ -79,10 +81,15 @@ DepthCamera readCamera(const fs::path& file) try {
         "cannot be opened; it has the camera's fx, fy, cx, cy and depth_factor");
   const mrpt::config::CConfigFile config(file.string());
   DepthCamera camera;
+  double number = 0;
+  strict_files::OptionList numbers;  // MRPT's reader does not say which one is none
+  for (const char* key : {"fx", "fy", "cx", "cy"}) numbers.add(key, number, "pixels", "");
+  numbers.add("depth_factor", camera.depthFactor, "", strict_files::above(0), "");
+  strict_files::IniSection(config, "CAMERA_PARAMS").read(numbers);
   camera.intrinsics.loadFromConfigFile("CAMERA_PARAMS", config);
-  camera.depthFactor = config.read_double("CAMERA_PARAMS", "depth_factor", 5000);
-  if (!(camera.depthFactor > 0)) throw std::runtime_error("depth_factor must be above 0");
   return camera;
+} catch (const std::invalid_argument&) {  // of MRPT's reader of lists
+  throw std::runtime_error(file.string() + ": resolution, dist: expected lists as [640 480]");
 } catch (const std::exception& e) {
   throw std::runtime_error(file.string() + ": " + strict_files::messageOf(e));
 }

@@ -2,6 +2,7 @@
 
 #include <mrpt/core/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -16,26 +17,29 @@ namespace {
 
 /** What makes meters of millimeters, or millimeters of meters. */
 constexpr double kUnits = 1000;
-/** No sensor of a robot sees half of its points farther away, m. */
-constexpr double kFarthest = 1000;
-
-/** Some thousand points tell it as well as all. */
-double medianRange(const semantic_types::LabeledCloud& cloud) {
-  const std::size_t step = 1 + cloud.size() / 1000;
-  std::vector<double> ranges;
-  for (std::size_t i = 0; i < cloud.size(); i += step)
-    ranges.push_back(static_cast<double>(cloud.points[i].norm()));
-  return measuring::quantile(std::move(ranges), 0.5);
-}
+/** No sensor of a robot sees half of its points farther away, m, and hardly one whose range is
+ * limited. */
+constexpr double kFarthest = 1000, kFarOfLimited = 100;
 
 }  // namespace
 
 void Doubts::add(const labeled_cloud::LabeledScan& scan, const Eigen::Isometry3d& T_map_sensor) {
+  constexpr float kSteep = 0.1f;  // m a meter; a laser scanner has none
+  const Eigen::RowVector3f up = T_map_sensor.linear().row(2).cast<float>();
+  std::vector<double> ranges;
+  // Some thousand points tell it as well as all.
+  for (std::size_t i = 0; i < scan.cloud.size(); i += 1 + scan.cloud.size() / 1000) {
+    const Eigen::Vector3f& p = scan.cloud.points[i];
+    ranges.push_back(static_cast<double>(p.norm()));
+    m_above += up * p > kSteep * p.norm();
+    m_below += up * p < -kSteep * p.norm();
+  }
+  m_ranges.push_back(measuring::quantile(std::move(ranges), 0.5));
   m_places.push_back(T_map_sensor.translation());
-  m_ranges.push_back(medianRange(scan.cloud));
 }
 
 bool Doubts::isUpsideDown(const SemanticOcTree& map) const {
+  if (m_above <= 2 * m_below) return false;
   constexpr std::size_t kMostPlaces = 50;
   constexpr double kFar = 30;            // m
   std::set<std::array<int, 2>> columns;  // of 1 m: a robot that stands is in one place
@@ -64,11 +68,11 @@ std::vector<std::string> Doubts::warnings(const SemanticOcTree& map, double maxR
     texts.push_back(
         "around the robot things are above the sensor and no ground is below it: is the sensor "
         "upside down? Its pose on the robot needs a roll of 180 degrees then");
-  const double nearest = map.getResolution(), farthest = maxRange > 0 ? maxRange : kFarthest;
-  const auto isMapped = [&](double range) { return range > nearest && range < farthest; };
+  const double nearest = map.getResolution(), most = maxRange > 0 ? maxRange : kFarthest;
   const double range = measuring::quantile(m_ranges, 0.5);
   const bool isNear = range <= nearest;
-  if (!isMapped(range) && isMapped(isNear ? range * kUnits : range / kUnits))
+  const double fits = isNear ? range * kUnits : range / kUnits;
+  if ((isNear || range >= std::max(most, kFarOfLimited)) && fits > nearest && fits < most)
     texts.push_back(mrpt::format(
         "half of the points are %s than %.3g m: are their ranges in another unit? %s by %g they "
         "would fit (depth_factor in camera.ini, rangeUnits of depth images)",

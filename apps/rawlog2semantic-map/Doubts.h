@@ -20,11 +20,13 @@ class Doubts {
 
  private:
   /** Whether the ground around the robot is above its sensor: more columns of the map have
-   * something only above the sensor than only below. */
+   * something only above the sensor than only below. Below a low ceiling they may have so, too, but
+   * then as many points are below the sensor. */
   bool isUpsideDown(const semantic_octree::SemanticOcTree& map) const;
 
   std::vector<Eigen::Vector3d> m_places;  ///< of sensors, m, map frame
   std::vector<double> m_ranges;           ///< medians of scans, m
+  std::size_t m_above = 0, m_below = 0;   ///< points that are steeply so
 };
 
 }  // namespace rawlog2semantic_map

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <stdexcept>
 
 #include "Application.h"
 #include "inputs/Inputs.h"
@@ -106,8 +107,12 @@ int run(const Cli& cli) {
                                       cli.pose ? TileOrder::Any : TileOrder::DepthFirst);
   std::optional<SemanticOcTree> edited;
   const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored->tree(); };
-  if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));
-  if (cli.box) edited = cropped(map(), boxOf(*cli.box));
+  try {
+    if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));
+    if (cli.box) edited = cropped(map(), boxOf(*cli.box));
+  } catch (const std::logic_error& e) {
+    throw std::runtime_error(cli.in.string() + ": " + e.what());
+  }
   if (cli.resolution)
     edited = coarsened(map(), levelsTo(*cli.resolution, map().getResolution(), 8, "--resolution"));
   if (!cli.halfLives.empty() || cli.decay) edited = aged(edited ? *std::move(edited) : map(), cli);

@@ -225,7 +225,8 @@ std::vector<strict_files::TextLine> pointsOf(const Cli& cli) {
 void checkTiles(semantic_octree::MapFolder& folder) {
   const std::vector<std::string> problems = folder.problems();
   if (problems.empty()) return;
-  for (const std::string& problem : problems) std::cerr << "  " << problem << '\n';
+  for (const std::string& problem : problems)
+    std::cerr << "  " << strict_files::printable(problem) << '\n';
   throw std::runtime_error("tiles that cannot be read (the others can, as by --at): " +
                            std::to_string(problems.size()));
 }

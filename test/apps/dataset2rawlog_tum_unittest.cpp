@@ -157,6 +157,10 @@ TEST_F(Tum, badInputIsNamed) {
   failureWith("rgb/b.png", "no image");
   const std::string noCamera = failureWith("camera.ini", "[CAMERA_PARAMS]\n");
   EXPECT_FALSE(contains(noCamera, "stack")) << noCamera;
+  const std::string camera = "[CAMERA_PARAMS]\nresolution = [8 6]\nfx = 5\nfy = 4\ncx = 3.5\ncy = ";
+  EXPECT_TRUE(contains(failureWith("camera.ini", camera + "wide\n"), "cy is 'wide'"));
+  EXPECT_TRUE(contains(failureWith("camera.ini", camera + "2\ndepth_factor = 0\n"), "above 0"));
+  EXPECT_TRUE(contains(failureWith("camera.ini", camera + "2\ndist = [0 x 0 0 0]\n"), "dist: "));
   EXPECT_TRUE(contains(failureWith("depth.txt", "1.0\n"), "depth.txt:1: expected 'time file'"));
   EXPECT_TRUE(contains(failureWith("depth.txt", "# none\n"), "no image in this list"));
   EXPECT_TRUE(contains(failureWith("groundtruth.txt", "1 2 3\n"), "groundtruth.txt:1"));

@@ -348,6 +348,28 @@ TEST_F(Rawlog2SemanticMap, warnsOfALidarThatSeemsUpsideDown) {
   }
 }
 
+/** A LiDAR that stands in a hall of 12 x 12 m, nearer to the ceiling than to the floor. */
+void writeHall(const fs::path& file) {
+  auto scan = labeledCloud(0, {}, {});
+  scan.sensorPose = {0, 0, 1.7, 0, 0, 0};
+  for (double azimuth = 0; azimuth < 2 * M_PI; azimuth += M_PI / 180)
+    for (double ring = -15.5; ring < 16; ++ring) {
+      const double slope = std::tan(ring * M_PI / 180), cosine = std::cos(azimuth),
+                   sine = std::sin(azimuth);
+      const double range = std::min(6 / std::max(std::abs(cosine), std::abs(sine)),
+                                    (slope > 0 ? 0.9 : -1.7) / slope);
+      scan.cloud.points.emplace_back(range * cosine, range * sine, range * slope);
+    }
+  scan.cloud.classes.assign(scan.cloud.points.size(), 1);
+  writeSmallRawlog(file, robotPose(0, 0), scan);
+}
+
+TEST_F(Rawlog2SemanticMap, takesNoLowCeilingForTheGround) {
+  writeHall(folder / "hall.rawlog");
+  const std::string said = succeeded(run("hall.rawlog")).output;
+  EXPECT_FALSE(contains(said, "upside down")) << said;
+}
+
 TEST_F(Rawlog2SemanticMap, warnsOfDepthInAnotherUnit) {
   const auto saidOf = [&](float unit, const Words& more = {}) {
     auto image = depthImage(10, 3, 4);
@@ -358,4 +380,6 @@ TEST_F(Rawlog2SemanticMap, warnsOfDepthInAnotherUnit) {
   EXPECT_FALSE(contains(saidOf(1e-3f), "another unit"));
   EXPECT_TRUE(contains(saidOf(1e-6f), "Multiplied by 1000 they would fit"));
   EXPECT_TRUE(contains(saidOf(1, {"--max-range", "20"}), "Divided by 1000 they would fit"));
+  const Words fineAndNear = {"--max-range", "5", "--resolution", "0.02"};
+  EXPECT_FALSE(contains(saidOf(0.0125f, fineAndNear), "another unit"));  // at 25 m
 }

@@ -162,7 +162,7 @@ TEST_F(SemanticMapEdit, badInputIsRefused) {
   expectRefusal(edit("map.semantic", "out", {"--tiles", "50"}), {"--tiles", "50", "0.2"});
   expectRefusal(edit("map.semantic", "out", {"--tiles", "0.1"}), {"--tiles", "0.1", "0.2"});
   expectRefusal(edit("map.semantic", "out.semantic", {"--box", "1", "0", "0", "0", "1", "1"}),
-                {"the box from 1,0,0 to 0,1,1 m is empty"});
+                {"map.semantic: ", "the box from 1,0,0 to 0,1,1 m is empty"});
   expectRefusal(edit("map.semantic", "out.semantic", {"--like", path("map.semantic")}), {"--like"});
   expectRefusal(edit("none.semantic", "out.semantic"), {"none.semantic"});
   expectRefusal(edit("map.semantic", "no/folder.semantic"), {"folder.semantic"});

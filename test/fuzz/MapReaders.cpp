@@ -80,6 +80,7 @@ std::uint32_t checksumOf(const fs::path& map) {
 void readTiles(const fs::path& folder) {
   const fs::path tile = folder / "tile_0_0_0.1.semantic", leaves = folder / "leaves.1.semantic";
   semantic_octree::FilterParameters parameters;
+  parameters.accuracy = 0.9;  // of the seeds
   parameters.labelCorrelation = 0.5;
   semantic_octree::saveTree(SemanticOcTree(0.4, fuzzedClasses(), parameters), leaves.string());
   const std::string content = textIn(tile);

@@ -46,6 +46,13 @@ void readCarmen(const fs::path& log) {
   dataset2rawlog::convertCarmen(log, conversionTo(folder.path()));
 }
 
+/** Beside the files that it names. */
+void readDrive(const fs::path& folder) {
+  for (const char* name : {"classes", "reactive", "vehicles"})
+    fs::create_directory_symlink(fs::path(MSO_SOURCES "/config") / name, folder / name);
+  simulated_drive::loadDriveConfig(folder / "drives/drive.ini");
+}
+
 #ifdef MSO_BAGS
 void readBag(const fs::path& bag) {
   const Removed folder(fuzzedPath(".out"));
@@ -149,7 +156,7 @@ std::vector<Reader> programReaders() {
        fromFile("", rawlog2semantic_map::loadConfig),
        {"config/maps/synthetic.ini"}},
       {"drive-config",
-       fromFile("", simulated_drive::loadDriveConfig),
+       fromFolder({"drives/drive.ini"}, readDrive),
        {"config/drives/synthetic.ini"}},
       {"ros-parameters",
        fromFile("", [](const fs::path& f) { semantic_map_ros2::readParameters({f}, {}); }),

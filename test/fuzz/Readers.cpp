@@ -47,8 +47,8 @@ void readDefinition(const std::string& bytes) {
   definition.loadFromConfigFile(mrpt::config::CConfigFileMemory(bytes), "Maps_semanticOctoMap_00");
 }
 
-void readLabels(const fs::path& file) {
-  labeled_cloud::LabelImage image = labeled_cloud::readLabelImage(file, fuzzedClasses());
+void readLabels(const fs::path& file, const ClassTable& classes) {
+  labeled_cloud::LabelImage image = labeled_cloud::readLabelImage(file, classes);
   labeled_cloud::readConfidences(file, image);
 }
 
@@ -80,6 +80,11 @@ const ClassTable& fuzzedClasses() {
 }
 
 std::vector<Reader> libraryReaders() {
+  const auto classesOf = [](const char* name) {
+    return semantic_types::loadClassTable(fs::path(MSO_SOURCES "/config/classes") / name);
+  };
+  static const ClassTable synthetic = classesOf("synthetic.yaml"),
+                          kitti = classesOf("semantic_kitti.yaml");
   return {
       {"rawlog", fromFile(".rawlog", readRawlog), {}},
       {"octomap", fromFile(".ot", readOctomap), {}},
@@ -87,7 +92,7 @@ std::vector<Reader> libraryReaders() {
       {"archived-map", readArchive<semantic_map::CSemanticOctoMap>, {}},
       {"archived-cloud", readArchive<labeled_cloud::CObservationLabeledCloud>, {}},
       {"map-definition", readDefinition, {}},
-      {"label-image", fromFile("", readLabels), {}},
+      {"label-image", fromFile("", [](const fs::path& f) { readLabels(f, kitti); }), {}},
       {"points", fromFile("", [](const fs::path& f) { labeled_cloud::readPointFile(f); }), {}},
       {"trajectory",
        fromFile("", [](const fs::path& f) { labeled_cloud::loadTumTrajectory(f); }),
@@ -96,18 +101,16 @@ std::vector<Reader> libraryReaders() {
        fromFile("", semantic_types::loadClassTable),
        {"config/classes/synthetic.yaml", "config/classes/semantic_kitti.yaml"}},
       {"weights",
-       fromFile("", [](const fs::path& f) { semantic_octree::loadWeights(f, fuzzedClasses()); }),
+       fromFile("", [](const fs::path& f) { semantic_octree::loadWeights(f, synthetic); }),
        {"config/weights/synthetic.yaml"}},
       {"order",
-       fromFile("",
-                [](const fs::path& f) { semantic_planning::loadClassOrder(f, fuzzedClasses()); }),
+       fromFile("", [](const fs::path& f) { semantic_planning::loadClassOrder(f, synthetic); }),
        {"config/orders/synthetic.yaml"}},
       {"vehicle",
        fromFile("", semantic_planning::loadVehicle),
        {"config/vehicles/robot.yaml", "config/vehicles/car.yaml"}},
       {"network",
-       fromFile("",
-                [](const fs::path& f) { labeled_cloud::loadNetworkOptions(f, fuzzedClasses()); }),
+       fromFile("", [](const fs::path& f) { labeled_cloud::loadNetworkOptions(f, kitti); }),
        {"config/networks/fchardnet_kitti.yaml"}},
       {"confusion",
        fromFile("",

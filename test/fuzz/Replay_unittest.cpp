@@ -50,6 +50,19 @@ TEST(Readers, haveEachANameOfItsOwn) {  // or fuzzing would meet the first alone
     EXPECT_TRUE(names.insert(reader.name).second) << reader.name;
 }
 
+TEST(Readers, takeOneOfTheirFilesAtLeast) {  // or fuzzing would end where they begin
+  for (const Reader& reader : readers()) {
+    std::string refusals;
+    bool isTaken = false;
+    for (const std::string& bytes : filesOf(reader)) {
+      const std::string refusal = expectAnswer(reader, bytes);
+      isTaken |= refusal.empty();
+      refusals += refusal + '\n';
+    }
+    EXPECT_TRUE(isTaken) << reader.name << ":\n" << refusals;
+  }
+}
+
 TEST(Readers, answerToEachFileThatEverBrokeOne) {
   for (const Reader& reader : readers()) {
     SCOPED_TRACE(reader.name);

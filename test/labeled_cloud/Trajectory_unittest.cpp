@@ -138,6 +138,7 @@ TEST(TumTrajectory, errorsNameFileAndLine) {
            {"1e300 0 0 0 0 0 0 1\n", "s is no time"},
            {"1700000000123456789 0 0 0 0 0 0 1\n", "looks like nanoseconds: divide by 1000000000"},
            {"0 0 0 0 0 0 0 0\n", ":1: the quaternion's length is 0"},
+           {"0 0 0 0 0 0 0 1e150\n", "length is 1e+150, not 1"},
            {"0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n", ":2: this time was there"},
            {"# nothing\n", ": no pose in this trajectory"}})
     EXPECT_TRUE(contains(error(text), words));

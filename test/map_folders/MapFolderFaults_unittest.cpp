@@ -72,6 +72,15 @@ TEST_F(MapFolderFaults, aBadTileIsNamedTheRestIsUsableAndTheMapAsItWas) {
   EXPECT_TRUE(problemsOf(folder / "map").empty() && tiles.problems().empty());
 }
 
+TEST_F(MapFolderFaults, aTileThatIsMissingIsNamedBeforeAnythingIsWritten) {
+  saveScans(folder / "map", someScans(2, 2));
+  const fs::path tile = tileFiles(folder / "map").front();
+  fs::remove(tile);
+  SemanticOcTree map = emptyMap();
+  EXPECT_TRUE(contains(errorOf([&] { MapFolder(map, folder / "map", kWrite); }),
+                       tile.string() + "': it is missing"));
+}
+
 TEST_F(MapFolderFaults, ofAnotherKindOfMapIsRefused) {
   saveScans(folder / "map", someScans(4, 2));
   SemanticOcTree coarse(0.8, numberedClasses(5)), others(0.4, numberedClasses(4));

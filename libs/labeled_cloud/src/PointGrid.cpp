@@ -1,6 +1,7 @@
 #include "PointGrid.h"
 
 #include <labeled_cloud/Pictures.h>
+#include <strict_files/OptionList.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -28,8 +29,8 @@ class Lens {
   explicit Lens(const mrpt::img::TCamera& camera) : m_camera(camera) {
     if (!(camera.fx() > 0 && camera.fy() > 0))
       throw std::invalid_argument(
-          "the camera is not calibrated: fx = " + std::to_string(camera.fx()) +
-          ", fy = " + std::to_string(camera.fy()));
+          "the camera is not calibrated: fx = " + strict_files::textOf(camera.fx()) +
+          ", fy = " + strict_files::textOf(camera.fy()));
     if (camera.distortion == DistortionModel::kannala_brandt)
       throw std::invalid_argument(
           "the camera has a fisheye (kannala_brandt), expected images without its distortion");

@@ -100,7 +100,8 @@ std::array<double, 8> parseLine(const std::string& line) {
 mrpt::poses::CPose3D poseOf(const std::array<double, 8>& v) {
   const double norm = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
   if (std::abs(norm - 1) > 0.01)
-    throw std::runtime_error("the quaternion's length is " + std::to_string(norm) + ", not 1");
+    throw std::runtime_error("the quaternion's length is " + strict_files::textOf(norm) +
+                             ", not 1");
   const mrpt::math::CQuaternionDouble q(v[7] / norm, v[4] / norm, v[5] / norm, v[6] / norm);
   return mrpt::poses::CPose3D(mrpt::poses::CPose3DQuat(v[1], v[2], v[3], q));
 }

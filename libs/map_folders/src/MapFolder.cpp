@@ -202,7 +202,12 @@ class MapFolder::Tiles {
     MapAccess::setStore(m_map, std::make_unique<NodeStore>(MapAccess::store(leaves),
                                                            MapAccess::store(m_map).stateBytes()));
     tiles->addFromIndex();
-    if (m_access == Access::Write) removeOld();
+    if (m_access != Access::Write) return;
+    for (const std::string& name : tiles->index().files())
+      if (!fs::exists(m_folder / name))
+        throw std::runtime_error("cannot load map '" + (m_folder / name).string() +
+                                 "': it is missing, and " + kIndexFile + " names it");
+    removeOld();
   }
 
   /** What the next index calls old: files that are there, and that it does not need. */

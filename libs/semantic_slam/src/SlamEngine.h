@@ -11,8 +11,8 @@ namespace semantic_slam {
 
 /** Share of a stretch's points where the place that it is compared with has some, at least. */
 constexpr double kCovered = 0.3;
-/** Points that searches at a keyframe look up at most while the robot drives: half a second of a
- * desktop's core, so that scans need not wait. At the end each search has all that it needs. */
+/** Points that a search looks up at most while the robot drives, a loop's a third: half a second of
+ * a desktop's core, so that scans need not wait. At the end each search has all that it needs. */
 constexpr std::size_t kLiveLooks = 300'000'000;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);

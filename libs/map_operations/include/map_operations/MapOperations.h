@@ -50,7 +50,8 @@ void mergeTo(SemanticOcTree& sum, const std::vector<const SemanticOcTree*>& maps
              Limits limits = Limits::Apply);
 
 /** The voxels whose centers are in a box (meters, map frame).
- * \throw std::invalid_argument an empty box, or NaN. */
+ * \throw std::invalid_argument an empty box, or NaN
+ * \throw std::length_error it cuts leaves that are too large. */
 SemanticOcTree cropped(const SemanticOcTree& map, const Eigen::AlignedBox3d& box);
 
 /** The map with voxels of 2^levels times the edge. A voxel is as occupied as the most occupied
@@ -61,7 +62,8 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
 /** The map seen from another frame: a voxel takes the state of the one in which its center lies.
  * \param T_new_old pose of the map's frame in the new one
  * \throw std::invalid_argument the pose is not a rigid transformation
- * \throw std::out_of_range a known part of the map would be outside the new one. */
+ * \throw std::out_of_range a known part of the map would be outside the new one
+ * \throw std::length_error it cuts leaves that are too large. */
 SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old);
 
 /** How much of what is in a map. A voxel is a cell of the map's resolution: a leaf above the lowest

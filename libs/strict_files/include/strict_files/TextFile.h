@@ -8,7 +8,7 @@
 namespace strict_files {
 
 /** All of a text file, byte for byte.
- * \throw std::runtime_error naming the file, if it cannot be read. */
+ * \throw std::runtime_error naming the file: it cannot be read, is a pipe, or exceeds memory. */
 std::string readText(const std::filesystem::path& file);
 
 /** Writes it as a StagedFile: what was there stays unless all of the text could be written.
