@@ -113,17 +113,15 @@ constexpr double kRate = 4;  // of the second rank
 
 PathJudgment judged(double best, double second) {
   PathJudgment judgment;
-  judgment.length = best + second;
-  judgment.price = judgment.length + kRate * second;
+  judgment.price = best + second + kRate * second;
   return judgment;
 }
 
 TEST_F(OfAPath, TellsThePriceOfItsClasses) {
   const PathJudgment judgment = judge(alongX(12));
   EXPECT_TRUE(judgment.isFree());
-  EXPECT_NEAR(judgment.length, 12, 1e-6);
   EXPECT_NEAR(judgment.price, 12 + kRate * (12 - 5 + 0.1), kRate * 2 * kVoxel);
-  EXPECT_NEAR(judge(alongX(12), 4).length, 8, 1e-6);
+  EXPECT_NEAR(judge(alongX(12), 6).price, 6 + kRate * 6, 1e-6);
 }
 
 TEST_F(OfAPath, WithAStrictOrderClassesOutweighAnyLength) {

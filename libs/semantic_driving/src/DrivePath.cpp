@@ -192,7 +192,6 @@ PathJudgment PathCheck::judge(const DrivePath& path, double from) const {
     }
     const double piece = std::min(step, path.length() - s);
     judgment.price += piece * std::min(order.rate(rank), std::pow(order.kHighestRate, rank));
-    judgment.length += piece;
   }
   return judgment;
 }

@@ -13,7 +13,6 @@ namespace semantic_driving {
 struct PathJudgment {
   /** Meters from where it was looked at to where the vehicle does not fit, or must not be. */
   double freeFor = std::numeric_limits<double>::infinity();
-  double length = 0;            ///< meters
   double longestBackwards = 0;  ///< stretch, meters
   /** Of driving all of it, and of its classes, as PlanResult::price; meters. An infinite rate
    * counts as the highest finite one to the power of its rank. */
@@ -21,7 +20,7 @@ struct PathJudgment {
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
   static constexpr double kSameLength = 0.5;  ///< paths that differ by less are as good, meters
-  static constexpr double kSameShare = 0.1;   ///< or by less of the other path's length, or price
+  static constexpr double kSameShare = 0.1;   ///< or by less of the other one's price
   /** Nobody backs up farther at a stretch if it can be helped, meters. */
   static constexpr double kLongestBackwards = 4;
 
