@@ -109,21 +109,26 @@ class OfAPath : public testing::Test {
   PaintedWorld world;
 };
 
-PathJudgment judged(std::vector<double> perRank) {
+constexpr double kRate = 4;  // of the second rank
+
+PathJudgment judged(double best, double second) {
   PathJudgment judgment;
-  for (const double length : perRank) judgment.length += length;
-  judgment.price = judgment.length;
-  judgment.lengthPerRank = std::move(perRank);
+  judgment.price = best + second + kRate * second;
   return judgment;
 }
 
-TEST_F(OfAPath, TellsTheLengthOnEachRank) {
+TEST_F(OfAPath, TellsThePriceOfItsClasses) {
   const PathJudgment judgment = judge(alongX(12));
   EXPECT_TRUE(judgment.isFree());
-  EXPECT_NEAR(judgment.length, 12, 1e-6);
-  EXPECT_NEAR(judgment.lengthPerRank[0], 5 - 0.1, 2 * kVoxel);
-  EXPECT_NEAR(judgment.lengthPerRank[1], 12 - 5 + 0.1, 2 * kVoxel);
-  EXPECT_NEAR(judge(alongX(12), 4).length, 8, 1e-6);
+  EXPECT_NEAR(judgment.price, 12 + kRate * (12 - 5 + 0.1), kRate * 2 * kVoxel);
+  EXPECT_NEAR(judge(alongX(12), 6).price, 6 + kRate * 6, 1e-6);
+}
+
+TEST_F(OfAPath, WithAStrictOrderClassesOutweighAnyLength) {
+  SemanticPlanner planner = plannerOver(world);
+  const SemanticPlanner strict(world.map(), planner.order().strict(), planner.options());
+  EXPECT_NEAR(PathCheck(strict).judge(alongX(12), 0).price, 12 + 1000 * (12 - 5 + 0.1),
+              1000 * 2 * kVoxel);
 }
 
 TEST_F(OfAPath, TellsHowFarItIsFree) {
@@ -141,7 +146,7 @@ TEST_F(OfAPath, ForbiddenGroundIsInTheWay) {
 }
 
 TEST_F(OfAPath, TellsThePriceOfDrivingTheRest) {
-  EXPECT_NEAR(judge(alongX(12), 4).price, 8, 1e-6);
+  EXPECT_NEAR(judge(alongX(4)).price, 4, 1e-6);
   std::vector<PathPoint> points = alongX(4).points();
   for (int i = 1; i <= 10; ++i) points.push_back({4.1 - 0.1 * i, 0.1, 0, 0, 0, true, 0, 0});
   const VehicleOptions vehicle;  // the planner's
@@ -152,7 +157,7 @@ TEST_F(OfAPath, TellsThePriceOfDrivingTheRest) {
 }
 
 TEST(PathJudgment, AChangeOfGearOutweighsSomeMeters) {
-  PathJudgment shunting = judged({8, 0}), ahead = judged({9, 0});
+  PathJudgment shunting = judged(8, 0), ahead = judged(9, 0);
   shunting.price = 8 + 2.5 + 1.5;
   EXPECT_TRUE(ahead.isClearlyBetterThan(shunting));
   EXPECT_FALSE(shunting.isClearlyBetterThan(ahead));
@@ -161,7 +166,7 @@ TEST(PathJudgment, AChangeOfGearOutweighsSomeMeters) {
 }
 
 TEST(PathJudgment, AFewMetersOfAWorseClassDoNotOutweighALongStretchBackwards) {
-  PathJudgment far = judged({12, 0}), ahead = judged({9, 3});
+  PathJudgment far = judged(12, 0), ahead = judged(9, 3);
   far.longestBackwards = 9;
   EXPECT_TRUE(ahead.isClearlyBetterThan(far));
   EXPECT_FALSE(far.isClearlyBetterThan(ahead));
@@ -180,22 +185,21 @@ TEST_F(OfAPath, TellsTheLongestStretchBackwardsOfTheRest) {
   EXPECT_EQ(judge(alongX(4)).longestBackwards, 0);
 }
 
-TEST(PathJudgment, IsBetterOnBetterClassesAndThenIfShorter) {
-  struct Row {
-    std::vector<double> path, other;
+TEST(PathJudgment, IsBetterIfItsPriceIsLowerByATenthAndHalfAMeter) {
+  const struct {
+    PathJudgment path, other;
     bool better;
-  };
-  for (const Row& row : std::vector<Row>{
-           {{20, 0}, {10, 3}, true},  // longer, but all on the best class
-           {{10, 3}, {20, 0}, false},
-           {{9, 0}, {11, 0}, true},    // shorter by more than a tenth
-           {{9, 0}, {9.9, 0}, false},  // by less
-           {{2, 0}, {2.4, 0}, false},  // by less than half a meter
-           {{2, 0}, {2.6, 0}, true},
-           {{9, 1}, {9, 1.4}, false},  // as long on the worse class, in good approximation
-           {{2, 1.4}, {9, 1}, true}})
-    EXPECT_EQ(judged(row.path).isClearlyBetterThan(judged(row.other)), row.better)
-        << row.path[0] << ", " << row.path[1];
+  } rows[] = {{judged(20, 0), judged(10, 3), true},  // longer, but all on the best class
+              {judged(10, 3), judged(20, 0), false},
+              {judged(9, 0), judged(11, 0), true},    // shorter by more than a tenth
+              {judged(9, 0), judged(9.9, 0), false},  // by less
+              {judged(2, 0), judged(2.4, 0), false},  // by less than half a meter
+              {judged(2, 0), judged(2.6, 0), true},
+              {judged(9, 1), judged(9, 1.2), false},
+              {judged(2, 1.4), judged(9, 1), true}};
+  for (const auto& row : rows)
+    EXPECT_EQ(row.path.isClearlyBetterThan(row.other), row.better)
+        << row.path.price << ", " << row.other.price;
 }
 
 TEST(DrivenTrack, LeadsBackTheWayTheVehicleCame) {

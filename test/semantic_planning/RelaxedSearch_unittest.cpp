@@ -283,6 +283,24 @@ TEST_F(RelaxedSearch, aPathThatOnlyTheWayBySingleColumnsLeadsToIsFound) {
   }
 }
 
+TEST_F(RelaxedSearch, bySingleColumnsAloneIsNotTakenTwiceWhereThereIsNoPath) {
+  world.floor(-10, 1.6, 0, 1.6, PaintedWorld::Road);  // around a bend that is too sharp
+  world.floor(0, 1.6, 0, 10, PaintedWorld::Road);
+  start = {-8, 0.7, 0};
+  goal = {0.7, 8, M_PI / 2};
+  options.shorten = true;
+  options.vehicle.turningRadius = 6;
+  options.vehicle.reverseWeight = std::numeric_limits<double>::infinity();
+  for (const auto& [width, ways] : {std::pair(0.2, 1), {0.6, 2}}) {
+    options.vehicle.footprint = Footprint::rectangle(-0.25, 0.55, width);
+    ASSERT_FALSE(guide().empty());
+    const StageTimes times = plan().times;
+    EXPECT_EQ(ways, std::count_if(times.begin(), times.end(),
+                                  [](const auto& stage) { return stage.first == "way"; }))
+        << width;
+  }
+}
+
 TEST_F(RelaxedSearch, keepsTheFootprintOffWalls) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);

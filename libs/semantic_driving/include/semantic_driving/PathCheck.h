@@ -13,18 +13,18 @@ namespace semantic_driving {
 struct PathJudgment {
   /** Meters from where it was looked at to where the vehicle does not fit, or must not be. */
   double freeFor = std::numeric_limits<double>::infinity();
-  std::vector<double> lengthPerRank;  ///< meters, best rank first
-  double length = 0;                  ///< meters
-  double longestBackwards = 0;        ///< stretch, meters
-  double price = 0;  ///< of driving all of it (semantic_planning::MotionCost), meters forward
+  double longestBackwards = 0;  ///< stretch, meters
+  /** Of driving all of it, and of its classes, as PlanResult::price; meters. An infinite rate
+   * counts as the highest finite one to the power of its rank. */
+  double price = 0;
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }
   static constexpr double kSameLength = 0.5;  ///< paths that differ by less are as good, meters
-  static constexpr double kSameShare = 0.1;   ///< or by less of the other path's length, or price
+  static constexpr double kSameShare = 0.1;   ///< or by less of the other one's price
   /** Nobody backs up farther at a stretch if it can be helped, meters. */
   static constexpr double kLongestBackwards = 4;
 
-  /** No long stretch backwards before classes before the price of driving. */
+  /** No long stretch backwards before a lower price. */
   bool isClearlyBetterThan(const PathJudgment& other) const;
 };
 

@@ -25,7 +25,7 @@ PlanResult cancelledPlan() {
 /** From the price field to a path:
  * 1. the way of least price of a vehicle that turns on the spot,
  * 2. beside it the best path that the vehicle can drive, which is smoothed,
- * 3. if there is none: beside the way column by column, which may be another one,
+ * 3. if there is none, and that way has longer steps: beside the one column by column,
  * 4. if there is none yet, or one that costs much more than that way: from pose to pose, improved
  *    alike,
  * 5. if none is good yet, and classes come before length: beside the roadmap's path. The way that
@@ -42,7 +42,7 @@ PlanResult PlannerCore::pathBy(const RelaxedPath& relaxed, const Task& task, Sta
   };
   if (isGood()) return result;
   if (isCancelled()) return cancelledPlan();
-  if (!result.found() && !relaxed.path.empty())
+  if (!result.found() && !relaxed.path.empty() && relaxed.stride > 1)
     offer(searchRelaxed(checker, task.start, task.goal, false, true).path, false);
   if (!isGood()) offer(wayBetween(task.start, task.goal, checker, m_prices));
   if (m_options.strict && !isGood()) offer(searchRoadmap(clock).path);

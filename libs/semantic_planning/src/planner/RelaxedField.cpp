@@ -202,10 +202,10 @@ RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& sta
                           const GroundPose& goal, bool overForbidden, bool bySingleColumns) {
   RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  const int stride = bySingleColumns ? 1 : strideOf(checker);
-  RelaxedSearch(checker, overForbidden, stride).run(start, goal, guide);
-  if (path.empty() && stride > 1)  // what classes leave free may be narrower than a step
-    RelaxedSearch(checker, overForbidden, 1).run(start, goal, guide);
+  guide.stride = bySingleColumns ? 1 : strideOf(checker);
+  RelaxedSearch(checker, overForbidden, guide.stride).run(start, goal, guide);
+  if (path.empty() && guide.stride > 1)  // what classes leave free may be narrower than a step
+    RelaxedSearch(checker, overForbidden, guide.stride = 1).run(start, goal, guide);
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {

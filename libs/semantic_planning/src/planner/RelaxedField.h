@@ -258,6 +258,7 @@ class CostField {
 struct RelaxedPath {
   std::vector<PathPoint> path;  ///< headings are those of travel; empty if there is no way
   double price = 0;             ///< meters; hardly any path of the vehicle costs less
+  int stride = 1;               ///< columns of its longer steps
   /** Without a way: the place nearest to the goal that can be reached. */
   std::optional<mrpt::math::TPoint2D> nearest;
 };
