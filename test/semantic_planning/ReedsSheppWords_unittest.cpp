@@ -7,7 +7,10 @@
 #include <utility>
 #include <vector>
 
+#if __has_include(<ompl/base/spaces/ReedsSheppStateSpace.h>)  // Debian testing has no OMPL
+#define MSO_OMPL
 #include "ReedsSheppOracle.h"
+#endif
 
 using mrpt::math::TPose2D;
 using semantic_planning::CurvePoint;
@@ -106,11 +109,9 @@ int used(const ReedsSheppCurve& curve) {
                                         [](const auto& segment) { return segment.length != 0; }));
 }
 
-/** Of poses close to each other the length is as good as the root of the goal's rounding. */
-double tolerance(double length) { return 1e-9 * std::max(0.1, length); }
-
 }  // namespace
 
+#ifdef MSO_OMPL
 TEST(ReedsSheppWords, areAsLongAsThoseOfOmpl) {
   for (const double radius : {0.4, 1.0, 5.0}) {
     const ReedsShepp shepp(radius);
@@ -128,22 +129,29 @@ TEST(ReedsSheppWords, areNowhereLongerThanThoseOfOmpl) {
   const ReedsSheppOracle ompl(1);
   for (const auto& [a, b] : degeneratePairs(3000)) {
     const double expected = ompl.distance(a, b);
-    ASSERT_LE(shepp.distance(a, b), expected + tolerance(expected)) << a << " to " << b;
+    // The length between poses close to each other is as good as the root of the goal's rounding.
+    ASSERT_LE(shepp.distance(a, b), expected + 1e-9 * std::max(0.1, expected)) << a << " to " << b;
   }
 }
 
-TEST(ReedsSheppWords, thatOnlyGoForwardLeadToTheGoalAndAreNowhereLongerThanThoseOfDubins) {
+TEST(ReedsSheppWords, thatOnlyGoForwardAreNowhereLongerThanThoseOfDubins) {
   for (const double radius : {0.4, 1.0, 5.0}) {
     const ReedsShepp shepp(radius);
     const ReedsSheppOracle ompl(radius);
-    for (const auto& [a, b] : randomPairs(2000, radius)) {
-      const ReedsSheppCurve curve = shepp.connectForward(a, b);
-      ASSERT_LE(curve.length(), ompl.forwardDistance(a, b) + 1e-6 * radius)
+    for (const auto& [a, b] : randomPairs(2000, radius))
+      ASSERT_LE(shepp.connectForward(a, b).length(), ompl.forwardDistance(a, b) + 1e-6 * radius)
           << radius << ": " << a << " to " << b;
+  }
+}
+#endif
+
+TEST(ReedsSheppWords, thatOnlyGoForwardLeadToTheGoal) {
+  for (const double radius : {0.4, 1.0, 5.0})
+    for (const auto& [a, b] : randomPairs(2000, radius)) {
+      const ReedsSheppCurve curve = ReedsShepp(radius).connectForward(a, b);
       ASSERT_LT(gap(endOf(curve, a, radius), b), 1e-7) << radius << ": " << a << " to " << b;
       for (const auto& segment : curve.segments()) ASSERT_GE(segment.length, 0);
     }
-  }
 }
 
 TEST(ReedsSheppWords, leadToTheGoalInTheLengthOfTheDistance) {
