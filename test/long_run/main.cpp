@@ -51,7 +51,8 @@ class Goals {
 
   TPose2D next() {
     while (true) {
-      const TPose2D pose(along(), along(), m_random.uniform(-M_PI, M_PI));
+      const double heading = m_random.uniform(-M_PI, M_PI), y = along(), x = along();
+      const TPose2D pose(x, y, heading);
       const auto ground = m_world.groundClass(pose.x, pose.y);
       const bool isWay = ground >= 1 && ground <= 4;  // road, markings, sidewalk, gravel
       if (isWay && m_world.clearance(m_footprint, pose.x, pose.y, pose.phi) > 1) return pose;

@@ -174,7 +174,8 @@ Solids bush(const Eigen::Vector3d& base, Random& random) {
   Solids result;
   for (int i = 0; i < 3; ++i) {
     const double size = random.uniform(0.35, 0.75);
-    const Eigen::Vector3d offset(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0.45 * size);
+    const double y = random.uniform(-0.5, 0.5), x = random.uniform(-0.5, 0.5);
+    const Eigen::Vector3d offset(x, y, 0.45 * size);
     result.push_back(ball(base + offset, size, 0.8 * size, leaves));
   }
   return result;

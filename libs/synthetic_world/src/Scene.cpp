@@ -93,7 +93,8 @@ void plaza(SceneBuilder& b) {
     b.add(bench(b.onGround({x, -4}), -M_PI / 2));
   }
   for (int i = 0; i < 9; ++i) {
-    const Eigen::Vector2d at(b.random.uniform(-32, 32), b.random.chance(0.5) ? -15.5 : -2.0);
+    const double y = b.random.chance(0.5) ? -15.5 : -2.0, x = b.random.uniform(-32, 32);
+    const Eigen::Vector2d at(x, y);
     const double yaw = b.random.uniform(-M_PI, M_PI);
     b.add(person(b.onGround(at), yaw, {188, 62, 52}, b.random.uniform()));
   }

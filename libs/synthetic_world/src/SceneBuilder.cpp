@@ -128,7 +128,8 @@ Color SceneBuilder::clothesColor() { return kClothes[random.below(6)]; }
 void SceneBuilder::houses(const Road& road, double left) {
   const double curb = road.halfWidth + road.sidewalk;
   for (double s = 4; s < road.middle.length(); s += 2.0) {
-    const Eigen::Vector2d size(random.uniform(8.5, 12), random.uniform(7, 9));
+    const double depth = random.uniform(7, 9), width = random.uniform(8.5, 12);
+    const Eigen::Vector2d size(width, depth);
     const double front = curb + random.uniform(4.5, 6.5);
     // The door looks to the house's left, the road is on the other side of what is left of it.
     const double yaw = road.middle.heading(s) + (left > 0 ? M_PI : 0);

@@ -16,7 +16,8 @@ bool isMirror(ClassId id) { return id == kWindow || id == kCar || id == kWater |
 std::optional<Hit> mirrored(const World& world, const Hit& mirror, const Eigen::Vector3d& beam,
                             double maxRange, Random& random) {
   constexpr double kOff = 0.2, kAbove = 1e-3;  // rad, m
-  const Eigen::Vector3d off(random.normal(), random.normal(), random.normal());
+  const double z = random.normal(), y = random.normal(), x = random.normal();
+  const Eigen::Vector3d off(x, y, z);
   const Eigen::Vector3d normal = (mirror.normal + kOff * off).normalized();
   const Eigen::Vector3d away = beam - 2 * beam.dot(normal) * normal;
   if (away.dot(mirror.normal) <= 0) return std::nullopt;

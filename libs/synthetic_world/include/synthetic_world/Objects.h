@@ -16,7 +16,8 @@ constexpr std::uint64_t scramble(std::uint64_t z) {
 
 /** Random numbers that are the same with every C++ library, which std's distributions are not.
  *
- * Streams are cheap: one per pixel keeps a picture independent of the order of its pixels. */
+ * Streams are cheap: one per pixel keeps a picture independent of the order of its pixels. Two
+ * draws never stand among one call's arguments: which comes first differs between processors. */
 class Random {
  public:
   explicit Random(std::uint64_t seed) : m_state(scramble(seed + kIncrement)) {}
