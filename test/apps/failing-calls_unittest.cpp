@@ -50,7 +50,7 @@ class FailingCalls : public testing::TestWithParam<std::string> {
     folder.write("classes.yaml", kSmallTable);
     folder.write("a.pcd", "FIELDS x y z label\nPOINTS 1\nDATA ascii\n1 2 3 1\n");
     writeSmallRawlog(folder / "small.rawlog", robotPose(10, 1.1),
-                     labeledCloud(10, {{1.1f, 0.2f, 0.2f}, {-1, 3, 0.2f}}, {1, 3}));
+                     labeledCloud(10, {{1.1f, 0.2f, 0.2f}, {-1, 3, 0.2f}}, {1, 1}));
     fs::create_directory(folder / "out");
     for (const char* name : {"a.semantic", "map.semantic", "path.csv", "report.json", "a.rawlog"})
       folder.write(std::string("out/") + name, "of before");
