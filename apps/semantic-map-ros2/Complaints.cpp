@@ -1,12 +1,19 @@
 #include "Complaints.h"
 
+#include <strict_files/Words.h>
+
 #include <cstring>
 #include <iostream>
 
 namespace semantic_map_ros2 {
 
 namespace {
-constexpr std::size_t kMostKinds = 100;  // peers cannot fill memory
+constexpr std::size_t kMostKinds = 100, kLongest = 1000;  // peers cannot fill memory
+
+/** Names of peers may be long, and have lines. */
+std::string shown(const std::string& text) {
+  return strict_files::printable(text.substr(0, kLongest));
+}
 
 /** A text without its numbers; digits within names stay. */
 std::string kindOf(const std::string& text) {
@@ -23,11 +30,13 @@ std::string kindOf(const std::string& text) {
 
 void Complaints::say(const std::string& what, const std::string& details) {
   const std::lock_guard<std::mutex> lock(m_mutex);
-  const std::string kind = kindOf(what);
+  const std::string words = shown(what), kind = kindOf(words);
   if (m_said.size() >= kMostKinds && m_said.count(kind) == 0) return;
-  Said& said = m_said.emplace(kind, Said{what, 0}).first->second;
-  if (++said.count == 1)
-    std::cerr << "Warning: " << what << (details.empty() ? "" : " (" + details + ")") << std::endl;
+  Said& said = m_said.emplace(kind, Said{words, 0}).first->second;
+  if (++said.count > 1) return;
+  std::cerr << "Warning: " << words;
+  if (!details.empty()) std::cerr << " (" << shown(details) << ')';
+  std::cerr << std::endl;
 }
 
 void Complaints::sum() const {

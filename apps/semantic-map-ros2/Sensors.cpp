@@ -23,7 +23,7 @@ namespace {
 
 const ros2::Qos kSensor{true, false, 50};
 const ros2::Qos kTransforms{true, false, 100}, kStaticTransforms{true, true, 100};
-constexpr std::size_t kMostLabelImages = 50;  // that wait for their depth image
+constexpr std::size_t kMostLabelImages = 50, kMostLabelBytes = 500'000'000;  // wait for depth
 
 RawCloud rawOf(const ros2::PointCloud2& message) {
   RawCloud raw;
@@ -157,7 +157,12 @@ void Sensors::addLabels(std::shared_ptr<const ros2::Image> message) {
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     m_labels[ros2::stampOf(message->header.stamp)] = message;
-    while (m_labels.size() > kMostLabelImages) m_labels.erase(m_labels.begin());
+    std::size_t bytes = 0;
+    for (const auto& [stamp, image] : m_labels) bytes += image->data._length;
+    while (m_labels.size() > 1 && (m_labels.size() > kMostLabelImages || bytes > kMostLabelBytes)) {
+      bytes -= m_labels.begin()->second->data._length;
+      m_labels.erase(m_labels.begin());
+    }
   }
   m_queue.wake();
 }

@@ -50,7 +50,7 @@ class FailingCalls : public testing::TestWithParam<std::string> {
     folder.write("classes.yaml", kSmallTable);
     folder.write("a.pcd", "FIELDS x y z label\nPOINTS 1\nDATA ascii\n1 2 3 1\n");
     writeSmallRawlog(folder / "small.rawlog", robotPose(10, 1.1),
-                     labeledCloud(10, {{1.1f, 0.2f, 0.2f}, {-1, 3, 0.2f}}, {1, 3}));
+                     labeledCloud(10, {{1.1f, 0.2f, 0.2f}, {-1, 3, 0.2f}}, {1, 1}));
     fs::create_directory(folder / "out");
     for (const char* name : {"a.semantic", "map.semantic", "path.csv", "report.json", "a.rawlog"})
       folder.write(std::string("out/") + name, "of before");
@@ -113,6 +113,7 @@ class FailingCalls : public testing::TestWithParam<std::string> {
     const std::string message = run.output.substr(at);
     EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << message;
     EXPECT_TRUE(contains(message, folder.path().string()) || contains(message, ".png")) << message;
+    EXPECT_FALSE(contains(message, "Success")) << message;
   }
 
   Files before, after;
@@ -125,6 +126,7 @@ const Words kJobs = {
     "semantic-map-export @map.semantic -f -o @out/a.csv -o @out/a.ply -o @out/a.yaml -o @out/a.ot "
     "-o @out/a.3Dscene",
     "semantic-map-compress @map.semantic --weights @weights.yaml -f -o @out",
+    "semantic-map-evaluate @map.semantic --scans @small.rawlog -f -o @out",
     "semantic-map-plan @world.semantic --order @order.yaml --start=-8,0,0 --goal=8,0,0 -f -o "
     "@out",
     "rawlog2semantic-map --config @small.ini -f -o @out --save-labeled @out/a.rawlog @small.rawlog",

@@ -150,6 +150,15 @@ TEST(Mapper, agesByTheTimeBetweenScansHoweverOftenItIsTold) {
   EXPECT_NEAR(often.clock(), 2.4, 1e-6) << "told first 0.3 s before the first scan";
 }
 
+TEST(Mapper, goesOnWhereAClockThatBeganIn1970IsSet) {
+  SemanticOcTree map(0.2, wallsAndCars());
+  Mapper mapper(map, {});
+  const auto T = planar(0, 0, 0);
+  for (const double seconds : {12.0, 1.8e9, 1.8e9 + 1})
+    mapper.insert(yardFrom(T, 2), Eigen::Isometry3d::Identity(), T, seconds);
+  EXPECT_NEAR(map.clock(), 1e9 + 1, 1e-3);
+}
+
 TEST(Mapper, statesWhatLabelsOfFourScansAreWorthFromEightOnAndOfAllAtTheEnd) {
   for (const bool localize : {false, true}) {
     SemanticOcTree map(0.2, wallsAndCars()), byHand(0.2, wallsAndCars());

@@ -73,7 +73,8 @@ void drawWithGnuplot(const std::string& script, const std::filesystem::path& fil
   if (output == -1) throw std::runtime_error(file.string() + ": cannot be written");
   std::string problem = draw(script, output);
   if (problem.empty() && file.extension() == ".png" && !isWholePng(output))
-    problem = "a figure cannot be written: is the disk full?";  // gnuplot does not look
+    problem = file.filename().string() +
+              ": cannot be written: is the disk full?";  // gnuplot does not look
   close(output);
   if (problem.empty()) return;
   std::error_code error;

@@ -141,7 +141,8 @@ void Mapper::insertFree(const Eigen::Vector3d& p, double radius, const Place& pl
 }
 
 double Mapper::secondsUntil(double seconds) const {
-  return m_agedAt ? std::max(0.0, seconds - *m_agedAt) : 0;
+  constexpr double kMost = 1e9;  // what a map may age by; a clock that is set leaps by more
+  return m_agedAt ? std::min(kMost, std::max(0.0, seconds - *m_agedAt)) : 0;
 }
 
 void Mapper::age(double seconds) {

@@ -32,6 +32,23 @@ fs::path placeOf(const fs::path& target) {
   return place;
 }
 
+/** What f() gives. \throw std::runtime_error naming the target, but for PlaceTaken */
+template <typename F>
+auto naming(const fs::path& target, const F& f) {
+  const auto refuse = [&target](const std::string& why) {
+    throw std::runtime_error(target.string() + ": cannot be written: " + why);
+  };
+  try {
+    return f();
+  } catch (const PlaceTaken&) {
+    throw;
+  } catch (const fs::filesystem_error& e) {
+    refuse(e.code().message());
+  } catch (const std::exception& e) {
+    refuse(e.what());
+  }
+}
+
 /** As the file has that is replaced. */
 void takePermissions(const fs::path& target, int descriptor) {
   struct stat old {};
@@ -56,22 +73,18 @@ StagedFile::~StagedFile() = default;
 
 const fs::path& StagedFile::path() const { return m_unfinished->path(); }
 
-void StagedFile::commit(Disk when) {
-  try {
+void StagedFile::commit(Disk when) try {
+  naming(m_target, [&] {
     const Placement placement(m_unfinished->path(), m_target);
     const OpenFolder folder(m_target.parent_path());
     if (when == Disk::Now) synchronize(m_unfinished->descriptor());
     const auto held = Unfinished::hold();
     placement.take();
     if (when == Disk::Now) folder.synchronize();
-  } catch (const PlaceTaken& e) {
-    const auto held = Unfinished::hold();
-    keepAndReport(m_target, *m_unfinished, e);
-  } catch (const fs::filesystem_error& e) {
-    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.code().message());
-  } catch (const std::exception& e) {
-    throw std::runtime_error(m_target.string() + ": cannot be written: " + e.what());
-  }
+  });
+} catch (const PlaceTaken& e) {
+  const auto held = Unfinished::hold();
+  keepAndReport(m_target, *m_unfinished, e);
 }
 
 namespace {
@@ -112,29 +125,19 @@ Placement OutputFolder::prepare(const std::string& name) const {
 void OutputFolder::commit(const std::vector<std::string>& names) {
   const auto each = [&](auto action) {
     for (std::size_t i = 0; i < names.size(); ++i) try {
-        action(i);
+        naming(m_folder / names[i], [&] { action(i); });
       } catch (const PlaceTaken& e) {
         keepAndReport(m_folder / names[i], *m_staging, e);
-      } catch (const fs::filesystem_error& e) {
-        throw std::runtime_error((m_folder / names[i]).string() +
-                                 ": cannot be written: " + e.code().message());
-      } catch (const std::exception& e) {
-        throw std::runtime_error((m_folder / names[i]).string() +
-                                 ": cannot be written: " + e.what());
       }
   };
   std::vector<Placement> placements;  // what can fail comes first
   each([&](std::size_t i) { placements.push_back(prepare(names[i])); });
-  const OpenFolder folder(m_folder);
+  const OpenFolder folder = naming(m_folder, [&] { return OpenFolder(m_folder); });
   flock(folder.descriptor(), LOCK_EX);  // of two at the same time, the files are of one
   const auto held = Unfinished::hold();
   each([&](std::size_t i) { placements[i].checkFree(); });
   each([&](std::size_t i) { placements[i].take(); });
-  try {
-    folder.synchronize();
-  } catch (const std::exception& e) {
-    throw std::runtime_error(m_folder.string() + ": cannot be written: " + e.what());
-  }
+  naming(m_folder, [&] { folder.synchronize(); });
 }
 
 namespace {

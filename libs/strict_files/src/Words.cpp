@@ -161,8 +161,8 @@ std::string readText(const std::filesystem::path& file) {
 
 void writeText(const std::filesystem::path& file, const std::string& text) {
   StagedFile staged(file);
-  std::ofstream stream(staged.path(), std::ios::binary);
   errno = 0;
+  std::ofstream stream(staged.path(), std::ios::binary);
   stream << text;
   stream.close();
   if (!stream)
