@@ -116,15 +116,28 @@ const std::string kOneOf = "one of ";
 
 bool isChoice(const strict_files::Option& option) { return option.expected.rfind(kOneOf, 0) == 0; }
 
+/** "0 to 2", as addNumber() has it; empty without limits on both sides. */
+std::string rangeOf(const strict_files::Option& option) {
+  static const std::regex bounded("a (whole )?number from (.*)");
+  std::smatch parts;
+  return std::regex_match(option.expected, parts, bounded) ? parts[2].str() : "";
+}
+
+std::string capitalized(std::string text) {
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 std::string helpOf(const strict_files::Option& option) {
-  if (isChoice(option)) return option.help;
-  const std::string unit = option.unit.empty() ? "" : ", " + option.unit;
-  return option.help + unit + " (" + option.expected + ")";
+  std::string help = capitalized(option.help);
+  if (!option.unit.empty()) help += ", " + option.unit;
+  if (isChoice(option) || !rangeOf(option).empty() || option.expected == "a number") return help;
+  return help + " (" + option.expected + ")";
 }
 
 /** "{compressed,halton}", as addWords() has it. */
 std::string typeOf(const strict_files::Option& option) {
-  if (!isChoice(option)) return "VALUE";
+  if (!isChoice(option)) return rangeOf(option).empty() ? "NUMBER" : rangeOf(option);
   std::string words;
   for (const char c : option.expected.substr(kOneOf.size()))
     if (c != ' ') words += c;
@@ -136,7 +149,7 @@ void addSwitch(CLI::App& app, const strict_files::Option& option, const std::str
   const std::string name = withDashes(option.name);
   app.add_flag_callback((on ? "--no-" : "--") + name,
                         [set = option.set, on] { set(on ? "false" : "true"); },
-                        (on ? "switches off: " : "") + option.help)
+                        on ? "Do not " + option.help : capitalized(option.help))
       ->group(group);
 }
 
@@ -284,7 +297,9 @@ std::vector<const CLI::Option*> optionsOf(const CLI::App& app) {
 }
 
 std::string problemOf(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string surplus = unexpected(app);
+  // Whatever followed an option without all of its values was not read.
+  const bool lacksValues = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
+  const std::string surplus = lacksValues ? "" : unexpected(app);
   return surplus.empty() ? readableMessage(error.what()) : surplus;
 }
 

@@ -101,8 +101,7 @@ OptionList sensorOptions(Cli& cli) {
   list.add("lidar_range", cli.lidar.maxRange, "m", above(synthetic_world::LidarOptions::kMinRange),
            "range of the LiDAR");
   list.add("turn_time", cli.turnTime, "s", between(0, 10),
-           "time of a turn of the LiDAR: each point has its own time, and is seen from where the "
-           "robot is then; 0: all at once");
+           "time of a turn of the LiDAR, while the robot moves on; 0: all points at once");
   list.add("ghosts", cli.lidar.ghosts, "", between(0, 1),
            "share of the LiDAR's beams on windows, cars, water and signs that return by way of "
            "what these mirror");
@@ -123,13 +122,13 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       ->capture_default_str();
   label_noise::addLabelNoiseKind(app, labelNoiseKind);
   app.add_option("--classes", classes,
-                 "Class table (YAML) for the labels, with the world's classes as raw ids. "
-                 "Without: the world's own table");
+                 "Class table (YAML) of the labels, whose raw ids are ids of the world's classes; "
+                 "without: the world's own");
   app.add_option("--truth-query", truthQuery,
                  "Print what is at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
   addNumber(app, "--tolerance", tolerance, strict_files::atLeast(0),
-            "A point as near to a surface as this lies on it, m");
+            "A point of the query lies on a surface within this distance of it, m");
   ::addOptions(app, driveOptions(*this), "World and drive");
   ::addOptions(app, sensorOptions(*this), "Sensors");
 }

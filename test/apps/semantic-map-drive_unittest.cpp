@@ -106,6 +106,12 @@ TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
   EXPECT_TRUE(contains(run.errors, "--start is required"));
 }
 
+TEST_F(SemanticMapDrive, RefusesAGoalOutsideOfTheWorld) {
+  const ProgramRun run = drive({"--goal=500,-17,20"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.errors, "--goal: outside of the world")) << run.errors;
+}
+
 const std::string kProgram = std::string(MSO_BIN_DIR) + "/semantic-map-drive";
 
 /** Some seconds, as a window shows them in real time. */
