@@ -107,7 +107,10 @@ TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
 }
 
 TEST_F(SemanticMapDrive, RefusesAGoalOutsideOfTheWorld) {
-  const ProgramRun run = drive({"--goal=500,-17,20"});
+  const ProgramRun run =
+      runProgram("semantic-map-drive", {"--start=-14,-19,10", "--goal=500,-17,20", "--order",
+                                        kConfig + "orders/synthetic.yaml", "--config",
+                                        kConfig + "drives/synthetic.ini", "--output", path("x")});
   EXPECT_EQ(run.status, 1);
   EXPECT_TRUE(contains(run.errors, "--goal: outside of the world")) << run.errors;
 }
