@@ -244,6 +244,18 @@ std::string unexpected(const CLI::App& app) {
          (writes ? " (what is written is named by -o)" : "");
 }
 
+/** Names an option that has another option in place of its last values; empty if none has. */
+std::string lackingValues(const CLI::App& app) {
+  const std::vector<std::string> known = namesOf(app);
+  for (const CLI::Option* option : optionsOf(app))
+    for (const std::string& word : option->results())
+      if (option->get_items_expected_min() > 1 &&
+          std::find(known.begin(), known.end(), word) != known.end())
+        return option->get_name() + " needs " + std::to_string(option->get_items_expected_min()) +
+               " values";
+  return "";
+}
+
 /** "NUMBER", "{one,other}", "1 to 8", whatever CLI11 calls it. Texts are names of files, where
  * options do not say something else. */
 std::string readableType(const std::string& type) {
@@ -297,9 +309,8 @@ std::vector<const CLI::Option*> optionsOf(const CLI::App& app) {
 }
 
 std::string problemOf(const CLI::App& app, const CLI::ParseError& error) {
-  // Whatever followed an option without all of its values was not read.
-  const bool lacksValues = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
-  const std::string surplus = lacksValues ? "" : unexpected(app);
+  if (const std::string lacking = lackingValues(app); !lacking.empty()) return lacking;
+  const std::string surplus = unexpected(app);
   return surplus.empty() ? readableMessage(error.what()) : surplus;
 }
 

@@ -74,17 +74,17 @@ constexpr double kGreatestDepth = 65;  // m: depth images hold millimeters in 16
 
 OptionList driveOptions(Cli& cli) {
   OptionList list;
-  list.add("seed", cli.seed, "", "of the world and of all noise");
+  list.add("seed", cli.seed, "", "seed of the world and of all noise");
   list.add("hills", cli.hills, "", between(0, 2), "factor of the ground's heights; 0 is flat");
   list.add("rate", cli.rate, "", above(0), "frames a second");
-  list.add("speed", cli.speed, "m/s", above(0), "of the robot");
+  list.add("speed", cli.speed, "m/s", above(0), "speed of the robot");
   list.add("start", cli.start, "m", "where on the route to begin");
   list.add("people", cli.people, "", between(0, 1000),
            "people who walk to and fro across the route");
   list.add("odometry", cli.odometry, "",
            "write movements and sensory frames instead of observations with true poses");
   list.add("odometry_noise", cli.odometryNoise, "", between(0, 1),
-           "of movements, standard deviation as a share of a movement");
+           "standard deviation of a movement, as a share of it");
   return list;
 }
 
@@ -92,7 +92,8 @@ OptionList sensorOptions(Cli& cli) {
   OptionList list;
   cli.camera.describe(list);
   list.remove("max_range");
-  list.add("camera_pitch", cli.cameraPitch, "degrees", between(-80, 80), "down, of the camera");
+  list.add("camera_pitch", cli.cameraPitch, "degrees", between(-80, 80),
+           "how far the camera looks down");
   list.add("camera_range", cli.camera.maxRange, "m",
            above(synthetic_world::CameraOptions::kMinRange).upTo(kGreatestDepth),
            "greatest depth of the camera");
