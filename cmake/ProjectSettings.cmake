@@ -12,7 +12,7 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 add_library(mso_settings INTERFACE)
 target_compile_options(mso_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-  # Of what stands in anonymous namespaces of files that are compiled together GCC thinks that headers have it.
+  # GCC takes anonymous namespaces of files that are compiled together for parts of headers.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>
   # Results must not depend on whether the compiler fuses a multiplication and an addition.
   -ffp-contract=off

@@ -116,15 +116,28 @@ const std::string kOneOf = "one of ";
 
 bool isChoice(const strict_files::Option& option) { return option.expected.rfind(kOneOf, 0) == 0; }
 
+/** "0 to 2", as addNumber() has it; empty without limits on both sides. */
+std::string rangeOf(const strict_files::Option& option) {
+  static const std::regex bounded("a (whole )?number from (.*)");
+  std::smatch parts;
+  return std::regex_match(option.expected, parts, bounded) ? parts[2].str() : "";
+}
+
+std::string capitalized(std::string text) {
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 std::string helpOf(const strict_files::Option& option) {
-  if (isChoice(option)) return option.help;
-  const std::string unit = option.unit.empty() ? "" : ", " + option.unit;
-  return option.help + unit + " (" + option.expected + ")";
+  std::string help = capitalized(option.help);
+  if (!option.unit.empty()) help += ", " + option.unit;
+  if (isChoice(option) || !rangeOf(option).empty() || option.expected == "a number") return help;
+  return help + " (" + option.expected + ")";
 }
 
 /** "{compressed,halton}", as addWords() has it. */
 std::string typeOf(const strict_files::Option& option) {
-  if (!isChoice(option)) return "VALUE";
+  if (!isChoice(option)) return rangeOf(option).empty() ? "NUMBER" : rangeOf(option);
   std::string words;
   for (const char c : option.expected.substr(kOneOf.size()))
     if (c != ' ') words += c;
@@ -136,7 +149,7 @@ void addSwitch(CLI::App& app, const strict_files::Option& option, const std::str
   const std::string name = withDashes(option.name);
   app.add_flag_callback((on ? "--no-" : "--") + name,
                         [set = option.set, on] { set(on ? "false" : "true"); },
-                        (on ? "switches off: " : "") + option.help)
+                        on ? "Do not " + option.help : capitalized(option.help))
       ->group(group);
 }
 
@@ -231,6 +244,18 @@ std::string unexpected(const CLI::App& app) {
          (writes ? " (what is written is named by -o)" : "");
 }
 
+/** Names an option that has another option in place of its last values; empty if none has. */
+std::string lackingValues(const CLI::App& app) {
+  const std::vector<std::string> known = namesOf(app);
+  for (const CLI::Option* option : optionsOf(app))
+    for (const std::string& word : option->results())
+      if (option->get_items_expected_min() > 1 &&
+          std::find(known.begin(), known.end(), word) != known.end())
+        return option->get_name() + " needs " + std::to_string(option->get_items_expected_min()) +
+               " values";
+  return "";
+}
+
 /** "NUMBER", "{one,other}", "1 to 8", whatever CLI11 calls it. Texts are names of files, where
  * options do not say something else. */
 std::string readableType(const std::string& type) {
@@ -284,6 +309,7 @@ std::vector<const CLI::Option*> optionsOf(const CLI::App& app) {
 }
 
 std::string problemOf(const CLI::App& app, const CLI::ParseError& error) {
+  if (const std::string lacking = lackingValues(app); !lacking.empty()) return lacking;
   const std::string surplus = unexpected(app);
   return surplus.empty() ? readableMessage(error.what()) : surplus;
 }

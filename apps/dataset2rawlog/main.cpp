@@ -44,7 +44,7 @@ struct Cli {
 
   void addLabelNoise(CLI::App* command) {
     command->add_option("--label-noise", conversion.labelNoise,
-                        "Share of the labels to replace by other classes, 0..1");
+                        "Share of the labels to replace by other classes, 0 to 1");
     label_noise::addLabelNoiseKind(*command, conversion.labelNoiseKind);
     command->add_option("--seed", conversion.seed, "Seed of the label noise");
   }

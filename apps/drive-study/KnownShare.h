@@ -17,7 +17,7 @@ class KnownShare {
  public:
   KnownShare(semantic_octree::SemanticOcTree& map, const synthetic_world::World& world,
              const ExploreTask& task);
-  /** Of ground or things; the mean of both, if weights ask for both. */
+  /** How much of the ground or of the things is known; the mean, if weights ask for both. */
   double share();
   /** How many columns of ground or things are right. Ground is as in the last share(). */
   long columns() const;

@@ -87,7 +87,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       where->add_flag("--explore", explore,
                       "Instead of a goal: look around until what is left is not worth the way");
   where->require_option(1);
-  app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)")
+  app.add_option("--weights", weights,
+                 "Weights of the classes to explore for (YAML, see config/weights)")
       ->needs(exploring);
   app.add_option("--solution", solution, "Name of one solution in the weights; without: the first")
       ->type_name("NAME")
@@ -186,7 +187,7 @@ class DriveProgram {
       : m_cli(checked(cli)),
         m_config(loadDriveConfig(cli.config)),
         m_weights(weightsOf(cli)),
-        m_scene(synthetic_world::makeScene(cli.scene, cli.seed, cli.hills)),
+        m_scene(sceneOf(cli)),
         m_output(cli.output),
         m_picture(regionOf(cli, m_scene.world), cli.explore ? 640 : 960, cli.explore) {
     m_config.sensors.seed = cli.seed;
@@ -266,6 +267,17 @@ class DriveProgram {
     if (cli.weights.empty()) return {};
     return semantic_octree::loadSolution(cli.weights, cli.solution, synthetic_world::classTable())
         .weights;
+  }
+  /** Start and goal lie in it. */
+  static synthetic_world::Scene sceneOf(const Cli& cli) {
+    synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
+    const double end = scene.world.terrain().halfExtent();
+    for (const auto& [name, place] : {std::pair("--start", cli.start), {"--goal", goalOf(cli)}})
+      if (std::max(std::abs(place.x), std::abs(place.y)) > end)
+        throw std::runtime_error(std::string(name) + ": outside of the world, where x and y are " +
+                                 strict_files::textOf(-end) + " to " + strict_files::textOf(end) +
+                                 " m");
+    return scene;
   }
   static const Cli& checked(const Cli& cli) {
     cli.outputs.checkFolder(cli.output, kFiles);

@@ -92,8 +92,8 @@ struct Cli {
     app.add_option("--scans", rawlogs, "Rawlogs of labeled scans that the maps were not made from")
         ->required();
     app.add_option("--made-from", madeFrom,
-                   "Rawlogs that the maps were made from: adds two rows to compare with, where "
-                   "their labels are only counted");
+                   "Rawlogs that the maps were made from: two more rows say how good plain counts "
+                   "of their labels in each voxel are");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Leave out points farther from the sensor than this, m")
         ->check(isNumber(strict_files::above(0)));
@@ -178,15 +178,22 @@ ordered_json toJson(const Evaluation& e, const ClassTable& classes) {
           {"classes", ofClass}};
 }
 
-void writeResults(const Cli& cli, const std::vector<NamedEvaluation>& results,
-                  const ClassTable& classes) {
+/** \return why there is no diagram; empty if there is one */
+std::string writeResults(const Cli& cli, const std::vector<NamedEvaluation>& results,
+                         const ClassTable& classes) {
   strict_files::OutputFolder output(cli.output);
   ordered_json report = ordered_json::object();
   for (const NamedEvaluation& result : results)
     report[result.name] = toJson(result.evaluation, classes);
   writeJson(output.staged("quality.json"), report);
-  drawReliability(results, output.staged("reliability.png"));
+  std::string problem;
+  try {
+    drawReliability(results, output.staged("reliability.png"));
+  } catch (const std::exception& e) {
+    problem = std::string("no figure reliability.png: ") + e.what();
+  }
   output.commit(kFiles);
+  return problem;
 }
 
 /** "1200 points", "1.20 M points" */
@@ -218,7 +225,7 @@ std::string tableOf(const std::vector<NamedEvaluation>& results) {
        << pointsText(first.points()) << " lie in occupied voxels";
   if (first.answered() > 0)
     text << "; " << numberText(100 * first.accuracy(), 1)
-         << " % of these that name a class have the right class";
+         << " % of these, where the voxel names a class, have the right class";
   text << '\n'
        << std::string(width, ' ') << "  occupied  right  stated  recall  log loss  calibration\n";
   for (const auto& [name, e] : results)
@@ -297,8 +304,9 @@ int run(const Cli& cli) {
   for (const Counting& peer : peers) results.push_back(peer.result);
   if (results.front().evaluation.points() == 0)
     throw std::runtime_error("no point of the scans has a class");
-  writeResults(cli, results, maps.front().classes());
+  const std::string problem = writeResults(cli, results, maps.front().classes());
   notes() << tableOf(results) << doubtsOf(results);
+  if (!problem.empty()) throw std::runtime_error(problem);
   return 0;
 }
 

@@ -84,7 +84,8 @@ void printBox(const ordered_json& box, std::ostream& out) {
 
 void printFolder(const ordered_json& folder, std::ostream& out) {
   out << "\n  folder        " << folder["tiles"] << " tiles of " << folder["tileSize"] << " m, "
-      << strict_files::sizeText(folder["bytes"]) << ", saved " << folder["generation"] << " times";
+      << strict_files::sizeText(folder["bytes"]) << ", saved " << folder["generation"]
+      << (folder["generation"] == 1 ? " time" : " times");
   if (folder["otherFiles"] > 0)
     out << "\n  not of it     " << folder["otherFiles"] << " files, "
         << strict_files::sizeText(folder["otherBytes"])
@@ -154,10 +155,15 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
       out << " " << nameInFiles(key) << " "
           << (value.is_string() ? value.get<std::string>() : value.dump());
   const ordered_json& calibration = d["filter"]["calibration"];
-  out << std::setprecision(3)
-      << "\n  calibration   the filter's class probabilities to the power of "
-      << calibration["power"].get<double>() << "; " << 100 * calibration["shared"].get<double>()
-      << " % go evenly to the classes named in the voxel";
+  const bool isCalibrated = calibration["power"] != 1.0 || calibration["shared"] != 0.0 ||
+                            !calibration["factors"].empty();
+  if (!isCalibrated)
+    out << "\n  calibration   none";
+  else
+    out << std::setprecision(3)
+        << "\n  calibration   the filter's class probabilities to the power of "
+        << calibration["power"].get<double>() << "; " << 100 * calibration["shared"].get<double>()
+        << " % go evenly to the classes named in the voxel";
   if (const auto& factors = calibration["factors"]; !factors.empty())
     out << "; times factors of " << std::min_element(factors.begin(), factors.end())->get<double>()
         << " to " << std::max_element(factors.begin(), factors.end())->get<double>() << " by class";

@@ -37,9 +37,8 @@ struct Cli {
     outputs.add(app, out, "FILE|FOLDER", "The sum to write (.semantic); with --tiles, its folder")
         ->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
-    app.add_flag(
-        "--partial", partial,
-        "For a sum that will be added to others: probabilities are limited in the last sum only");
+    app.add_flag("--partial", partial,
+                 "The sum will be added to others: do not limit its probabilities yet");
     app.add_option("--box", box,
                    "Add up only what is in this box, m; `inf` and `-inf` are no limit")
         ->type_name("X,Y,Z,X2,Y2,Z2")

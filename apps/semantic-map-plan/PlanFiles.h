@@ -18,10 +18,9 @@ namespace semantic_map_plan {
 void saveScene(const semantic_octree::SemanticOcTree* map,
                const semantic_planning::PlanResult& plan, const std::filesystem::path& file);
 
-/** Draws upon the map from above the drivable ground in its classes' colors and the holes in it,
- * the graph's vertices and its edges (light: not evaluated; blocked ones are left out), start and
- * goal as arrows with the footprint, the path if there is one, what is in the way of a start or
- * goal that is refused, and a legend of all that. */
+/** Draws a plan upon the map from above. First the drivable ground in its classes' colors with its
+ * holes, then the graph; light edges are not evaluated, blocked ones left out. Start and goal are
+ * arrows with the footprint. With the path or what refuses start or goal comes a legend. */
 cv::Mat drawPlan(map_pictures::MapCanvas canvas, const semantic_planning::SemanticPlanner& planner,
                  const semantic_planning::PlanResult& plan, const mrpt::math::TPose2D& start,
                  const mrpt::math::TPose2D& goal);

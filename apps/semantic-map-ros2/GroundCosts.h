@@ -37,9 +37,9 @@ class GroundCosts {
   /** Follows the map. \param T_map_robot of a frame that may be anywhere on the robot
    * \return around the cells that changed; where box() is another one, all may be others */
   std::optional<Box> follow(const Eigen::Isometry3d& T_map_robot);
-  /** Of the robot's frame above the ground, m; none: it was not seen yet. */
+  /** How high the robot's frame is above the ground, m; none: no ground was seen yet. */
   std::optional<double> frameHeight() const { return m_height.meters(); }
-  /** That the cells are of; none: nothing is known. */
+  /** The box that the cells fill; none: nothing is known. */
   const std::optional<Box>& box() const { return m_box; }
   /** Row by row, the lowest first. */
   std::vector<std::uint8_t>& cells() { return m_cells; }

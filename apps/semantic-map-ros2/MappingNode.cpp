@@ -184,7 +184,8 @@ void MappingNode::insert(const WaitingScan& scan, semantic_slam::SensorScan one,
   m_T_world_robot = T_world_robot;
   m_isNew = true;
   m_came.push_back(scan.came);
-  details() << scan.topic << ": " << seen[0].cloud.size() << " points inserted" << std::endl;
+  std::ostream& said = m_scans == 1 ? notes() : details();  // scans come
+  said << scan.topic << ": " << seen[0].cloud.size() << " points inserted" << std::endl;
 }
 
 std::optional<semantic_navigation::RobotState> MappingNode::robotAt(Stamp stamp) const {

@@ -83,7 +83,7 @@ int run(const Cli& cli, const ros2::Arguments& arguments) {
 }  // namespace semantic_map_ros2
 
 int main(int argc, char** argv) {
-  CLI::App app("Makes a semantic octree map in a live ROS 2 system, without ROS");
+  CLI::App app("Makes a semantic octree map in a live ROS 2 system; needs no ROS of its own");
   const semantic_map_ros2::Cli cli(app);
   ros2::Arguments arguments = ros2::argumentsOf(argc, argv);
   return runApplication(app, static_cast<int>(arguments.others.size()), arguments.others.data(),

@@ -4,6 +4,7 @@
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 #include <strict_files/TextFile.h>
+#include <strict_files/Words.h>
 
 #include <algorithm>
 #include <chrono>
@@ -157,8 +158,8 @@ class Station {
     }
     for (const Session& s : m_sessions)
       if (s.isServed())
-        notes() << s.peer().text() << ": " << s.numSent() << " datagrams of " << s.bytesSent()
-                << " bytes\n";
+        notes() << s.peer().text() << ": " << s.numSent() << " datagrams, "
+                << strict_files::sizeText(s.bytesSent()) << '\n';
   }
 
  private:

@@ -194,7 +194,7 @@ void CompressPanel::measure() {
   for (std::size_t term = 0; term < m_lines.size(); ++term) {
     const auto& share = retained[term];
     if (m_lines[term].kept)
-      m_lines[term].kept->setCaption(share ? mrpt::format("%.3g", 100 * *share) + " %" : "-");
+      m_lines[term].kept->setCaption(share ? mrpt::format("%.1f", 100 * *share) + " %" : "-");
   }
   const std::size_t bytes =
       semantic_octree::fileSize(m_live->compressedMap(m_viewer.layer().map()));

@@ -76,7 +76,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   auto* from = poses::addParsed(
       app, "--camera", "X,Y,Z,DISTANCE,AZIMUTH,ELEVATION",
       [this](const std::string& text) { view.camera = map_view::OrbitCamera::ofText(text); },
-      "Point looked at, distance (m), azimuth, elevation (degrees), as the window says them");
+      "Point looked at, distance (m), azimuth, elevation (degrees), as the panel Map shows them");
   app.add_flag("--top", view.top, "From above, north up")->excludes(from);
   std::map<std::string, map_view::ViewColoring> colorings;
   for (const auto& [name, value] : choicesOf(map_view::ViewColoring())) colorings[name] = value;

@@ -74,17 +74,17 @@ constexpr double kGreatestDepth = 65;  // m: depth images hold millimeters in 16
 
 OptionList driveOptions(Cli& cli) {
   OptionList list;
-  list.add("seed", cli.seed, "", "of the world and of all noise");
+  list.add("seed", cli.seed, "", "seed of the world and of all noise");
   list.add("hills", cli.hills, "", between(0, 2), "factor of the ground's heights; 0 is flat");
   list.add("rate", cli.rate, "", above(0), "frames a second");
-  list.add("speed", cli.speed, "m/s", above(0), "of the robot");
+  list.add("speed", cli.speed, "m/s", above(0), "speed of the robot");
   list.add("start", cli.start, "m", "where on the route to begin");
   list.add("people", cli.people, "", between(0, 1000),
            "people who walk to and fro across the route");
   list.add("odometry", cli.odometry, "",
            "write movements and sensory frames instead of observations with true poses");
   list.add("odometry_noise", cli.odometryNoise, "", between(0, 1),
-           "of movements, standard deviation as a share of a movement");
+           "standard deviation of a movement, as a share of it");
   return list;
 }
 
@@ -92,7 +92,8 @@ OptionList sensorOptions(Cli& cli) {
   OptionList list;
   cli.camera.describe(list);
   list.remove("max_range");
-  list.add("camera_pitch", cli.cameraPitch, "degrees", between(-80, 80), "down, of the camera");
+  list.add("camera_pitch", cli.cameraPitch, "degrees", between(-80, 80),
+           "how far the camera looks down");
   list.add("camera_range", cli.camera.maxRange, "m",
            above(synthetic_world::CameraOptions::kMinRange).upTo(kGreatestDepth),
            "greatest depth of the camera");
@@ -101,8 +102,7 @@ OptionList sensorOptions(Cli& cli) {
   list.add("lidar_range", cli.lidar.maxRange, "m", above(synthetic_world::LidarOptions::kMinRange),
            "range of the LiDAR");
   list.add("turn_time", cli.turnTime, "s", between(0, 10),
-           "time of a turn of the LiDAR: each point has its own time, and is seen from where the "
-           "robot is then; 0: all at once");
+           "time of a turn of the LiDAR, while the robot moves on; 0: all points at once");
   list.add("ghosts", cli.lidar.ghosts, "", between(0, 1),
            "share of the LiDAR's beams on windows, cars, water and signs that return by way of "
            "what these mirror");
@@ -123,13 +123,13 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       ->capture_default_str();
   label_noise::addLabelNoiseKind(app, labelNoiseKind);
   app.add_option("--classes", classes,
-                 "Class table (YAML) for the labels, with the world's classes as raw ids. "
-                 "Without: the world's own table");
+                 "Class table (YAML) of the labels, whose raw ids are ids of the world's classes; "
+                 "without: the world's own");
   app.add_option("--truth-query", truthQuery,
                  "Print what is at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
   addNumber(app, "--tolerance", tolerance, strict_files::atLeast(0),
-            "A point as near to a surface as this lies on it, m");
+            "A point of the query lies on a surface within this distance of it, m");
   ::addOptions(app, driveOptions(*this), "World and drive");
   ::addOptions(app, sensorOptions(*this), "Sensors");
 }

@@ -115,7 +115,8 @@ TEST(UsageErrors, nameTheOptionAndOfferWhatWasMeant) {
            {"semantic-map-edit a -o b --resolution -1",
             "--resolution is -1, expected a number above 0"},
            {"semantic-map-edit a --output", "--output lacks its value"},
-           {"semantic-map-edit a -o b --box 1,2,3", "--box needs 6 values"}}) {
+           {"semantic-map-edit a -o b --box 1,2,3", "--box needs 6 values"},
+           {"semantic-map-edit a --box 1,2,3,4,5 -o b", "--box needs 6 values"}}) {
     const ProgramRun run = runCommand(MSO_BIN_DIR "/" + command);
     EXPECT_EQ(run.status, 64) << run.output;
     EXPECT_TRUE(contains(run.output, message));

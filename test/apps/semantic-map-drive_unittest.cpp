@@ -106,6 +106,15 @@ TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
   EXPECT_TRUE(contains(run.errors, "--start is required"));
 }
 
+TEST_F(SemanticMapDrive, RefusesAGoalOutsideOfTheWorld) {
+  const ProgramRun run =
+      runProgram("semantic-map-drive", {"--start=-14,-19,10", "--goal=500,-17,20", "--order",
+                                        kConfig + "orders/synthetic.yaml", "--config",
+                                        kConfig + "drives/synthetic.ini", "--output", path("x")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.errors, "--goal: outside of the world")) << run.errors;
+}
+
 const std::string kProgram = std::string(MSO_BIN_DIR) + "/semantic-map-drive";
 
 /** Some seconds, as a window shows them in real time. */

@@ -156,6 +156,17 @@ TEST_F(SemanticMapEvaluate, asksTheMapForTheLabeledPointsOfTheScans) {
   EXPECT_GT(cv::imread(file("out/reliability.png")).total(), 100000u);
 }
 
+TEST_F(SemanticMapEvaluate, withoutGnuplotAllButTheFigureIsWritten) {
+  const std::string path = getenv("PATH");
+  setenv("PATH", folder.path().c_str(), 1);
+  const ProgramRun run = evaluate({file("map.semantic"), "--scans", file("scans.rawlog")});
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.errors, "gnuplot-nox"));
+  EXPECT_TRUE(contains(run.output, "2 points lie in occupied voxels"));
+  EXPECT_TRUE(contains(folder.read("out/quality.json"), "meanRecall"));
+}
+
 TEST_F(SemanticMapEvaluate, comparesMapsAndTakesRangeAndNeighbors) {
   saveTree(SemanticOcTree(1.0, roadGrassCar()), file("empty.semantic"));
   const json both = reportOf({file("map.semantic"), file("empty.semantic"), "--max-range", "5",

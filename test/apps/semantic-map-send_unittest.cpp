@@ -318,7 +318,7 @@ TEST_F(MapRadio, datagramsOfNobodyChangeNothing) {
     succeeded(receive(port));
   });
   EXPECT_EQ(run.status, 0) << run.output;
-  EXPECT_EQ(run.output.find(" datagrams of "), run.output.rfind(" datagrams of ")) << run.output;
+  EXPECT_EQ(run.output.find(" datagrams, "), run.output.rfind(" datagrams, ")) << run.output;
   expectSame(folder.read("r.semantic"), compressed("map.semantic", "road"));
 }
 

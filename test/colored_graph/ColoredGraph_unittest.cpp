@@ -33,7 +33,7 @@ std::set<VertexId> logged(const ColoredGraph& graph, std::uint64_t from) {
   return vertices;
 }
 
-/** The same graph as sets and maps. */
+/** A graph of sets and maps, to compare with. */
 struct Reference {
   std::set<VertexId> vertices;
   std::map<EdgeId, std::pair<VertexId, VertexId>> edges;

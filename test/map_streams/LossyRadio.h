@@ -19,7 +19,7 @@ class Radio {
     const int times = chance(m_loss) ? 0 : chance(0.1) ? 2 : 1;
     for (int i = 0; i < times; ++i) m_inAir.push_back(bytes);
   }
-  /** Those that come now, in any order; some stay for later. */
+  /** Datagrams that come now, in any order; some stay for later. */
   std::vector<Datagram> receive() {
     std::shuffle(m_inAir.begin(), m_inAir.end(), m_random);
     std::vector<Datagram> come;

@@ -97,7 +97,7 @@ class DrivenRobot : public RoadInGrass {
     if (steps++ % 10 == 0) points->write(PointMessage(seen(), "lidar", stamp).message());
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  /** The same world from where the robot is. */
+  /** scan() from where the robot is. */
   semantic_types::LabeledCloud seen() const {
     const auto all = scan();
     semantic_types::LabeledCloud cloud;

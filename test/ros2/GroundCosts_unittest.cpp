@@ -101,7 +101,7 @@ class SomeRobots {
       EXPECT_NEAR(*m_costs[i].frameHeight(), kHeights[i], tolerance);
     }
   }
-  /** Of what is known. */
+  /** Blocked cells as a share of the known ones. */
   double shareThatIsBlocked() const {
     const GroundCosts& costs = m_costs.back();
     const Box& box = *costs.box();

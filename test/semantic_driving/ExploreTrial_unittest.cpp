@@ -51,7 +51,7 @@ TEST(ExploreTrial, endsByItselfWithNearlyAllThatMoreMetersFind) {
       << byItself.end;
 }
 
-/** Of three villages: a single short drive may have bad luck. */
+/** Three villages are summed up: a single short drive may have bad luck. */
 TEST(ExploreTrial, ofOtherWeightsDrivesElsewhereAndWinsThere) {
   const auto config = lookingAround(60);
   const auto shareOf = [&](const std::set<int>& weights, const std::set<int>& ground) {

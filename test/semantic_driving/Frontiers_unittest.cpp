@@ -278,9 +278,9 @@ struct Garden {
   TPose2D start, goal;
 };
 
-/** A bent hedge between start and goal, 11 to 15 m apart, that has one end 6 to 20 m aside, half of
- * them with a hook there, and goes on 6 to 20 m or to the garden's border on the other side; a road
- * on either side and, mostly, around the end. */
+/** A bent hedge between start and goal, which are 11 to 15 m apart. It ends 6 to 20 m aside, half
+ * of the time with a hook; on the other side it ends after 6 to 20 m or at the garden's border. A
+ * road leads along both sides and, mostly, around the end. */
 Garden garden(std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto between = [&random](double low, double high) {

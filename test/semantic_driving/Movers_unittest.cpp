@@ -37,7 +37,7 @@ class Follower {
     m_tracker.update(seconds);
   }
   Movers at(double seconds) const { return m_tracker.at(seconds); }
-  /** Of a point of each class at a place, how many a scan has without those who pass. */
+  /** How many points, one of each class at a place, a scan keeps without those who pass. */
   std::size_t lastingAt(const Vector2d& place) const {
     semantic_types::LabeledCloud cloud;
     cloud.points.assign(2, {static_cast<float>(place.x()), static_cast<float>(place.y()), 0});

@@ -49,7 +49,7 @@ TEST(LabelEvidence, ofRandomLabelsIsThatOfPolyasUrnInAnyOrder) {
 }
 
 TEST(LabelEvidence, ofTwoLabelsFollowsFromTheDefinitionOfCorrelation) {
-  // Of two indicators of mean p that are correlated by r, both are 1 with p^2 + r p (1 - p).
+  // Two indicators of mean p, correlated by r, are both 1 with p^2 + r p (1 - p).
   for (const double r : {0.0, 0.1, 0.2, 0.7, 1.0}) {
     const double right = 0.8, wrong = 0.05;
     const auto both = [r](double p) { return p * p + r * p * (1 - p); };

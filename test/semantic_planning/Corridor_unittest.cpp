@@ -77,7 +77,7 @@ class TileWorld {
 
   static constexpr std::int64_t kNoWay = INT64_MAX;
 
-  /** Of a step into a tile from one next to it; not past the corner of a hole. */
+  /** What a step into a tile from one next to it costs; none leads past the corner of a hole. */
   std::int64_t cost(int x, int y, int toX, int toY) const {
     if (rank(toX, toY) < 0 || rank(x, toY) < 0 || rank(toX, y) < 0) return kNoWay;
     const std::int64_t length = x != toX && y != toY ? 7 : 5;

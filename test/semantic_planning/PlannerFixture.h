@@ -44,7 +44,7 @@ class PlannerTest : public testing::Test {
   static double meters(const PlanResult& plan, PaintedWorld::Class id) {
     return plan.lengthPerClass[id];
   }
-  /** Of the part of a path whose points are of a kind. */
+  /** Length of the part of a path whose points are of a kind. */
   template <typename IsMeant>
   static double meters(const std::vector<semantic_planning::PathPoint>& path,
                        const IsMeant& isMeant) {

@@ -161,7 +161,7 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-/** Of classes, a tenth of them wrong. */
+/** A map with classes, of which a tenth are wrong. */
 SemanticOcTree mapOf(const std::string& scene, std::uint64_t seed, double meters) {
   return recordings::mapOf(scene, seed, {lidarOf(0.1), kRobotLidar, meters});
 }

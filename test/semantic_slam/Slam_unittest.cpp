@@ -149,7 +149,7 @@ Slam drivenIntoDeadEnd(double end) {
 
 double alongIt(const PoseEdge& edge) { return edge.information(0, 0); }
 double acrossIt(const PoseEdge& edge) { return edge.information(1, 1); }
-/** Of a step of 1.01 m, both ways, before anything is learned of it. */
+/** Information of odometry over 1.01 m, in both directions, before anything is learned of it. */
 const double kOfOdometry = 1 / std::pow(0.2 * (0.01 + 0.1 * std::sqrt(1.01)), 2);
 
 }  // namespace

@@ -91,6 +91,9 @@ TEST(ClassTableFile, errorsNameFileLineAndValue) {
   EXPECT_EQ(
       errorFor(one + "colour: 1\n"),
       ":3: unknown key 'colour'; known are classes, free_half_life, no_class, unknown_raw_id");
+  EXPECT_EQ(errorFor("best_to_worst: [a]\n"),
+            ":1: this is an order of classes; expected the keys classes, free_half_life, no_class, "
+            "unknown_raw_id");
   EXPECT_EQ(errorFor(one + "no_class: [0]\nno_class: [1]\n"), ":4: key 'no_class' twice");
   EXPECT_EQ(errorFor(one + "no_class: [-1]\n"), ":3: expected a raw id, found '-1'");
   EXPECT_EQ(errorFor(one + "no_class: 7\n"), ":3: expected a list of raw ids");

@@ -34,7 +34,7 @@ class CdrReader {
     if (!text.empty() && text.back() == '\0') text.remove_suffix(1);
     return std::string(text);
   }
-  /** Those of an image or a cloud. */
+  /** The bytes of an image or a cloud. */
   template <class Raw>
   void readBytes(Raw& raw) {
     const std::string_view data = m_bytes.bytes(number<std::uint32_t>());

@@ -71,8 +71,9 @@ std::optional<map_view::ViewCell> AskPanel::ask(const map_view::Ray& ray) {
 void AskPanel::show(const map_view::ViewCell& cell) {
   const CellAnswer answer = answerOf(cell, m_viewer.layer().map());
   const auto& c = answer.center;
-  m_lines[0]->setCaption(
-      mrpt::format("%s, p(occupied) %.3f", answer.state.c_str(), answer.occupancy));
+  const bool isVoxel = answer.size < 1.5 * m_viewer.layer().map().getResolution();
+  m_lines[0]->setCaption(mrpt::format(isVoxel ? "%s, p(occupied) %.3f" : "%s, p up to %.3f",
+                                      answer.state.c_str(), answer.occupancy));
   m_lines[1]->setCaption(mrpt::format("key %d %d %d, edge %g m", answer.key[0], answer.key[1],
                                       answer.key[2], answer.size));
   m_lines[2]->setCaption(mrpt::format("center %.2f %.2f %.2f m", c.x(), c.y(), c.z()));

@@ -91,18 +91,18 @@ const Choices<NetworkOptions::Content>& choicesOf(NetworkOptions::Content) {
 }
 
 void NetworkOptions::describeInput(OptionList& list) {
-  list.add("width", width, "pixels", atLeast(1), "of the input; must be given");
-  list.add("height", height, "pixels", atLeast(1), "of the input; must be given");
+  list.add("width", width, "pixels", atLeast(1), "width of the input; must be given");
+  list.add("height", height, "pixels", atLeast(1), "height of the input; must be given");
   list.add("fit", fit, "",
            "stretch: to the input's size; width: scaled to its width, top rows are cut off, or the "
            "last row is repeated below");
   list.add("channels", channels, "", "their order");
   list.add("mean", mean, "", "each channel is (value - mean) / std, its value from 0 to 1");
-  list.add("std", deviation, "", "of each channel, above 0");
+  list.add("std", deviation, "", "standard deviation of each channel, above 0");
 }
 
 void NetworkOptions::describeOutput(OptionList& list) {
-  list.add("name", output, "", "of the layer; may be left out if there is only one");
+  list.add("name", output, "", "name of the layer; may be left out if there is only one");
   list.add("content", content, "",
            "a plane of scores or of probabilities for each class, or one of numbers of `classes` "
            "from 0");

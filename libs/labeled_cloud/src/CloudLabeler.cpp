@@ -209,9 +209,9 @@ void CameraDescription::describe(strict_files::OptionList& list) {
   list.add("pose_x", x, "m", "place of the camera on the robot");
   list.add("pose_y", y, "m", "place of the camera on the robot");
   list.add("pose_z", z, "m", "place of the camera on the robot");
-  list.add("pose_yaw", yaw, "degrees", "of the optical frame: x right, y down, z forward");
-  list.add("pose_pitch", pitch, "degrees", "of the optical frame");
-  list.add("pose_roll", roll, "degrees", "of the optical frame");
+  list.add("pose_yaw", yaw, "degrees", "yaw of the optical frame: x right, y down, z forward");
+  list.add("pose_pitch", pitch, "degrees", "pitch of the optical frame");
+  list.add("pose_roll", roll, "degrees", "roll of the optical frame");
 }
 
 CameraCalibration CameraDescription::calibration() const {

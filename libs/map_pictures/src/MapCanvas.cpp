@@ -220,8 +220,9 @@ using strict_files::OptionList;
 
 void PictureStyle::describe(OptionList& list) {
   constexpr int kMost = 16384;
-  list.add("width", width, "pixels", between(200, kMost), "of the picture without its legend");
-  list.add("height", height, "pixels", between(200, kMost), "of the picture");
+  list.add("width", width, "pixels", between(200, kMost),
+           "width of the picture without its legend");
+  list.add("height", height, "pixels", between(200, kMost), "height of the picture");
   list.add("max_height", maxHeight, "m", strict_files::Range().orInfinite(),
            "higher cells are not drawn; none: all but the ceiling of an indoor map");
 }

@@ -132,7 +132,8 @@ py::object bounds(const SharedMap& map) {
 }
 
 std::string summaryOf(const SharedMap& map) {
-  return map.read([](const SemanticOcTree& tree) {
+  const auto meters = [](double m) { return strict_files::textOf(std::round(1e3 * m) / 1e3); };
+  return map.read([meters](const SemanticOcTree& tree) {
     std::string classes;
     constexpr int kShown = 3;
     for (int id = 1; id <= std::min(tree.numClasses(), kShown); ++id)
@@ -140,7 +141,8 @@ std::string summaryOf(const SharedMap& map) {
           (id > 1 ? ", " : "") + tree.classes().name(static_cast<semantic_types::ClassId>(id));
     if (tree.numClasses() > kShown) classes += ", ...";
     std::string text = "<Map: voxels of " + strict_files::textOf(tree.getResolution()) + " m, " +
-                       std::to_string(tree.numClasses()) + " classes (" + classes + "), ";
+                       std::to_string(tree.numClasses()) +
+                       (tree.numClasses() == 1 ? " class (" : " classes (") + classes + "), ";
     if (tree.empty()) return text + "empty>";
     Eigen::Array3d low, high;
     tree.getMetricMin(low.x(), low.y(), low.z());
@@ -148,8 +150,7 @@ std::string summaryOf(const SharedMap& map) {
     text += std::to_string(tree.getNumLeafNodes()) + " leaves, " +
             strict_files::sizeText(tree.memoryUsage());
     for (int i = 0; i < 3; ++i)
-      text += std::string(", ") + "xyz"[i] + " " + strict_files::textOf(low[i]) + " to " +
-              strict_files::textOf(high[i]);
+      text += std::string(", ") + "xyz"[i] + " " + meters(low[i]) + " to " + meters(high[i]);
     return text + " m>";
   });
 }

@@ -205,7 +205,7 @@ class PlaneSearch::Search {
   }
   /** Along each axis. */
   int numSquares(int level) const { return (2 * m_radius >> level) + 1; }
-  /** Of all squares of the window, row by row. */
+  /** Scores all squares of the window, row by row. */
   void scoreAll(int level, int angle, std::vector<int>& scores) const {
     const int n = numSquares(level), width = m_grid.m_width >> level,
               height = m_grid.m_height >> level;
@@ -240,7 +240,7 @@ class PlaneSearch::Search {
     }
     std::stable_sort(open.begin() + static_cast<std::ptrdiff_t>(first), open.end(), isWorse);
   }
-  /** Of a square, the one beside it, and the two above. */
+  /** Scores a square, the one beside it, and the two above. */
   std::array<int, 4> scoreFour(int level, int angle, int dx, int dy) const {
     const auto& squares = m_grid.m_levels[static_cast<std::size_t>(level)];
     const int lastX = m_grid.m_width - (2 << level), lastY = m_grid.m_height - (2 << level),

@@ -71,7 +71,7 @@ struct Normals {
       const double root = 1 + squared / kScale;
       add(d->evidence / (root * root), r, q - d->mean);
     }
-    // Of T poseOf(x) p: until here x is along the submap's axes.
+    // Turned so that they belong to T poseOf(x) p: until here x is along the submap's axes.
     H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
     Matrix6 turn = Matrix6::Zero();
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T.linear();

@@ -85,8 +85,29 @@ void StrictYaml::checkMap(const YAML::Node& map) const {
   }
 }
 
+namespace {
+
+/** What a file is that has keys of another kind of file; empty if it has none of these. */
+std::string kindOf(const YAML::Node& root, const std::set<std::string>& known) {
+  static const std::pair<const char*, const char*> kinds[] = {
+      {"output", "this is a network's configuration"},
+      {"confusion", "this is a confusion matrix"},
+      {"classes", "this is a class table"},
+      {"best_to_worst", "this is an order of classes"},
+      {"solutions", "these are weights of classes"},
+      {"relevant", "these are weights of classes"},
+      {"turning_radius", "this is a vehicle"}};
+  for (const auto& [key, kind] : kinds)
+    if (root[key] && !known.count(key)) return kind;
+  return {};
+}
+
+}  // namespace
+
 void StrictYaml::checkKeys(const YAML::Node& map, const std::set<std::string>& known) const {
   checkMap(map);
+  if (const std::string kind = map.is(m_root) ? kindOf(map, known) : ""; !kind.empty())
+    fail(map, kind + "; expected the keys " + joined({known.begin(), known.end()}));
   for (const auto& entry : map) {
     const std::string key = entry.first.Scalar();
     if (!known.count(key)) fail(entry.first, unknownWord("key", key, {known.begin(), known.end()}));

@@ -35,7 +35,7 @@ void LidarOptions::describe(strict_files::OptionList& list) {
   list.add("columns", columns, "", between(1, 16384), "beams beside each other, all around");
   list.add("lowest", lowest, "degrees", above(-90).below(90), "elevation of the lowest ring");
   list.add("highest", highest, "degrees", above(-90).below(90), "elevation of the highest ring");
-  list.add("max_range", maxRange, "m", above(kMinRange), "of returns");
+  list.add("max_range", maxRange, "m", above(kMinRange), "greatest range of returns");
 }
 
 void LidarOptions::validate() const {
@@ -130,8 +130,8 @@ double CameraOptions::focalLength() const {
 
 void CameraOptions::describe(strict_files::OptionList& list) {
   using strict_files::between;
-  list.add("width", width, "pixels", between(2, 8192), "of the images");
-  list.add("height", height, "pixels", between(2, 8192), "of the images");
+  list.add("width", width, "pixels", between(2, 8192), "width of the images");
+  list.add("height", height, "pixels", between(2, 8192), "height of the images");
   list.add("fov", horizontalFov, "degrees", between(1, 170), "horizontal field of view");
   list.add("max_range", maxRange, "m", strict_files::above(kMinRange).upTo(kFarthest),
            "greatest depth");

@@ -67,7 +67,7 @@ std::vector<Ray> raysOf(const ViewShape& shape, double far, int columns) {
   return rays;
 }
 
-/** Those that share their first voxels are beside each other. */
+/** Sorted: beams that share their first voxels are beside each other. */
 std::vector<Beam> beamsOf(const std::vector<Ray>& rays) {
   std::vector<Beam> beams;
   for (const Ray& ray : rays) {

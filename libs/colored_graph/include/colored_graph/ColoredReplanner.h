@@ -11,10 +11,9 @@ namespace colored_graph {
  * Lifelong planning A* (Koenig, Likhachev, Furcy 2004) over cost vectors, from the goal as in D*
  * Lite: what was found before stays, and only vertices whose cost to the goal changed and matters
  * for the path are looked at again. It follows the graph's change log, so nobody has to tell it
- * what changed. Edges are lazy: unevaluated ones count with their lower bound, those on the best
- * path are evaluated from the start on, and the path is repaired until all of its edges are
- * evaluated; a path that is optimal under lower bounds and has none left is optimal (LazySP, Dellin
- * and Srinivasa 2016). */
+ * what changed. Edges are lazy: unevaluated ones count with their lower bound. Those on the best
+ * path are evaluated from the start on, and the path is repaired until none is left. A path that is
+ * optimal under lower bounds and is evaluated is optimal (LazySP, Dellin and Srinivasa 2016). */
 class ColoredReplanner {
  public:
   /** \param graph must outlive the replanner.

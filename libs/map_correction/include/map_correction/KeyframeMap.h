@@ -28,11 +28,11 @@ struct CorrectionReport {
 /** A map that can be corrected: it remembers the scans that it is made of, keyframe by keyframe, so
  * that keyframes can be moved, as a closed loop asks for, and removed.
  *
- * After any sequence of insertions, moves and removals the map is, bit for bit, what insertions of
- * the scans that are left make of an empty map, in their order, at their present poses and at their
- * times of its clock (see SemanticOcTree::age(), which may be called at any time): nodes,
- * class records and G-values, also where log-odds are at their limits or more than three classes
- * were seen. Readers of its changes (MapFollower) are told of corrections as of insertions.
+ * After any sequence of insertions, moves and removals the map is, bit for bit, a new one of the
+ * scans that are left: inserted in their order, at their present poses and times (see
+ * SemanticOcTree::age()). That holds for nodes, class records and G-values, also where log-odds are
+ * at their limits or more than three classes were seen. Readers of its changes (MapFollower) are
+ * told of corrections as of insertions.
  *
  * How (doc/how-it-works/corrected-maps.md): of each scan its points are kept, and which voxels it
  * saw how, packed tile by tile. A correction follows the beams of the scans that move, and finds
@@ -60,8 +60,8 @@ class KeyframeMap {
                          const InsertionOptions& options = {}, double secondsSince = 0);
 
   /** Gives keyframes other poses, all at once: tiles that several of them see are made anew once.
-   * Of several poses of a keyframe the last one counts. If it fails, the map is as it was, unless
-   * memory ran out at the end, or a tile's file fails (MapFolder); look at
+   * If a keyframe has several poses, the last one counts. A failure leaves the map as it was, but
+   * not if memory ran out at the end or a tile's file failed (MapFolder): see
    * SemanticOcTree::isBroken().
    * \throw std::out_of_range no such keyframe, or a sensor would be outside of the map. */
   CorrectionReport move(const std::vector<KeyframePose>& poses);

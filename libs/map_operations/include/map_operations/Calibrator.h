@@ -15,10 +15,10 @@ namespace semantic_octree {
  *
  * Voxels keep the label of each scan that saw them. Expectation maximization finds how often which
  * class is taken for which, and what each voxel is (Dawid and Skene, "Maximum Likelihood Estimation
- * of Observer Error-Rates Using the EM Algorithm", 1979), with labels that repeat those of earlier
- * scans: of three labels the first two of which differ, the third is more often the second than the
- * first, if scans repeat each other. What all scans repeat cannot be seen, and is taken to be at
- * least that one of two scans repeats the one before.
+ * of Observer Error-Rates Using the EM Algorithm", 1979). Labels may repeat those of earlier scans:
+ * then, if the first two of three labels differ, the third is more often the second than the first.
+ * What all scans repeat cannot be seen, and is taken to be at least that one of two scans repeats
+ * the one before.
  *
  * One voxel in 4 keeps its labels, fewer in large maps: about 32 thousand voxels, 64 labels each.
  * Only additions, multiplications and divisions are made, so that results are the same bits

@@ -93,9 +93,9 @@ class LiveCompression {
   /** What the compressed tree retains of each term, if there is something to retain: see
    * semantic_octree::AbstractionMeasures::retention(). */
   std::vector<std::optional<double>> retained() const;
-  /** Of what is worth telling (terms with a positive weight, times that) in an inner node's block,
-   * the largest node around it that is not free, the share that the compressed tree retains. 1
-   * where there is nothing worth telling, and above the blocks. */
+  /** The share that the compressed tree retains of what is worth telling in an inner node's block.
+   * Worth telling are terms with a positive weight, times that; the block is the largest node
+   * around it that is not free. 1 where nothing is worth telling, and above the blocks. */
   float retainedAround(Index node) const;
 
   /** The map's inner nodes. */

@@ -67,11 +67,11 @@ void setAbstraction(SemanticOcTree& map, const AbstractionOptions& options);
 void dropAbstraction(SemanticOcTree& map);
 bool hasAbstraction(const SemanticOcTree& map);
 
-/** The abstraction of a map that keeps G-values (setAbstraction()), and the
- * compressed tree that it leads to: the one with the largest J(T) = sum_t weight_t I_t(T) - alpha
- * I_X(T) of all trees that can be had by turning inner nodes into leaves; the smallest one if
- * several have it. (Larsson et al., "Information-theoretic Abstraction of Semantic Octree Models
- * for Integrated Perception and Planning", problem (1), algorithm 1.)
+/** The abstraction of a map that keeps G-values (setAbstraction()), and the compressed tree that it
+ * leads to. Among all trees that arise by turning inner nodes into leaves, this one has the largest
+ * J(T) = sum_t weight_t I_t(T) - alpha I_X(T), and is the smallest if several have it. (Larsson et
+ * al., "Information-theoretic Abstraction of Semantic Octree Models for Integrated Perception and
+ * Planning", problem (1), algorithm 1.)
  *
  * A view: it holds nothing but the map, which must outlive it. */
 class Abstraction {

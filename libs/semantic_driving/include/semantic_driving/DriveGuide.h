@@ -17,9 +17,9 @@ struct RefusedGoal {
   double seconds = 0;                          ///< when it was said
 };
 
-/** Decides which path to drive, as the map grows: to the goal, to a place from where to see more of
- * the way there, or out of where the vehicle must not be; where there is no way out, as behind
- * somebody who stepped in front, back along its own track until it can plan again.
+/** Decides which path to drive, as the map grows. It leads to the goal, to a place from where to
+ * see more of the way there, or out of where the vehicle must not be. Where there is no way out, as
+ * behind somebody who stepped in front, it leads back along the vehicle's own track.
  *
  *     while (!guide.gaveUp() && !guide.arrived(state, drive)) {
  *       map.insert(...);                          // what was seen

@@ -49,11 +49,11 @@ struct Exploration {
   bool goalReached = false;
 };
 
-/** Places on drivable ground next to unknown space from which to see more of the way to a goal,
- * most promising first: least way there, where rank r counts r + 1 times, and on through the
- * unknown, around all that is known to be in the way (the freespace assumption), and what turning
- * around costs where the vehicle does not head there. (Yamauchi, "A frontier-based approach for
- * autonomous exploration", 1997, with a goal.)
+/** Places on drivable ground next to unknown space from which to see more of the way to a goal. The
+ * most promising one comes first: least way there, where rank r counts r + 1 times, and on through
+ * the unknown around all that is known to be in the way (the freespace assumption). Turning around
+ * costs, too. (Yamauchi, "A frontier-based approach for autonomous exploration", 1997, with a
+ * goal.)
  *
  * Only what borders on the goal's region counts: a flood from the goal over all that is not known
  * to be in the way, up to where the vehicle can get. A way to the goal leaves the known ground for

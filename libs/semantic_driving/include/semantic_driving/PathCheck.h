@@ -14,8 +14,8 @@ struct PathJudgment {
   /** Meters from where it was looked at to where the vehicle does not fit, or must not be. */
   double freeFor = std::numeric_limits<double>::infinity();
   double longestBackwards = 0;  ///< stretch, meters
-  /** Of driving all of it, and of its classes, as PlanResult::price; meters. An infinite rate
-   * counts as the highest finite one to the power of its rank. */
+  /** What driving the whole path costs, classes included, as PlanResult::price; meters. An
+   * infinite rate counts as the highest finite one to the power of its rank. */
   double price = 0;
 
   bool isFree() const { return freeFor == std::numeric_limits<double>::infinity(); }

@@ -139,7 +139,7 @@ class Navigator {
   std::string reason() const;
   /** Where the robot is in the map. */
   const semantic_driving::DriveState& state() const { return m_state; }
-  /** Of the robot's frame above the ground, m; none: no ground was seen yet. */
+  /** How high the robot's frame is above the ground, m; none: no ground was seen yet. */
   std::optional<double> frameHeight() const { return m_height.meters(); }
   /** When the newest scan that the map has was taken, seconds; before all: far in the past. */
   double mappedAt() const { return m_mappedAt; }

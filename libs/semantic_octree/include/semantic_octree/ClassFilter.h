@@ -73,8 +73,8 @@ class ClassFilter {
   /** What is stated of a cell's classes (see Calibration); its occupancy is the belief's. With
    * factors it names the likeliest classes, whether the belief names them or not. */
   Belief stated(const Belief& b) const;
-  /** The same as K + 1 probabilities, p[0] = free; with factors, of each class that is not named,
-   * too. */
+  /** What stated() says as K + 1 probabilities, p[0] = free. With factors, classes that are not
+   * named have their own. */
   void distribution(const Belief& b, double* p) const;
   /** Occupancy of a cell with a class record, ln(p(occupied) / p(free)); on the grid. */
   Real occupancyOf(const Belief& b) const;

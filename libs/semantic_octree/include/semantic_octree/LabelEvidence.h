@@ -9,10 +9,10 @@ namespace semantic_octree {
  *
  *   f(n) = sum_{i < n} ln((s accuracy + i) / (s e + i)),  e = (1 - accuracy) / (K - 1),
  *
- * of Dirichlet-multinomial labels (Polya's urn): of a cell of class k, the first names k with
- * probability accuracy and any other class with e, and any two labels are correlated by
- * 1 / (1 + s) = labelCorrelation (Minka, "Estimating a Dirichlet distribution"). Without
- * correlation each label adds as much as the first (counting), with 1 only the first does.
+ * of Dirichlet-multinomial labels (Polya's urn: Minka, "Estimating a Dirichlet distribution"). In a
+ * cell of class k the first label is k with probability accuracy, and any other class with e. Two
+ * labels are correlated by 1 / (1 + s) = labelCorrelation. Without correlation each label adds as
+ * much as the first (counting), with 1 only the first does.
  *
  * What counts of other classes add is the same for all classes. */
 class LabelEvidence {

@@ -14,13 +14,13 @@ struct LabelReliability {
   }
 };
 
-/** How often two labels of one scan in one cell are the same. Of a cell of class k, labels that are
+/** How often two labels of one scan in one cell are the same. In a cell of class k, labels that are
  * right with probability `accuracy` and correlated by r agree with probability
  *
  *   S + r (1 - S),   S = accuracy^2 + (1 - accuracy)^2 / (K - 1),
  *
- * so that agreement tells r (the moment estimate of an intraclass correlation: Fleiss, "Measuring
- * Nominal Scale Agreement among Many Raters", 1971), or, below S, that the accuracy is lower. */
+ * Agreement tells r (the moment estimate of an intraclass correlation: Fleiss, "Measuring Nominal
+ * Scale Agreement among Many Raters", 1971). Below S it tells that the accuracy is lower. */
 class LabelAgreement {
  public:
   /** The labels of one cell. \param begin, end in ascending order */

@@ -110,9 +110,9 @@ std::map<std::size_t, Connected> connectedAround(const Ground& ground,
   return grounds;
 }
 
-/** Of all ground that is half as large as the largest, the highest: the storey that the robot is
- * on. On a level with the frame's origin a quarter is enough, for most robots have it there. None:
- * too little is seen. */
+/** The storey that the robot is on: the highest ground of at least half the largest one's size. On
+ * a level with the frame's origin a quarter is enough, for most robots have it there. None: too
+ * little is seen. */
 std::optional<double> heightAbove(const Ground& ground, const VehicleOptions& vehicle,
                                   const Eigen::Isometry3d& T_map_robot) {
   constexpr std::size_t kFew = 4;  // rays

@@ -52,8 +52,6 @@ ClassOrder readOrder(const StrictYaml& yaml, const ClassTable& classes, const YA
 
 ClassOrder loadClassOrder(const std::filesystem::path& file, const ClassTable& classes) {
   const StrictYaml yaml(file);
-  if (yaml.root().IsMap() && yaml.root()["classes"])
-    yaml.fail(yaml.root(), "this is a class table; an order of classes has best_to_worst");
   yaml.checkKeys(yaml.root(), {"best_to_worst", "rates"});
   const ClassOrder order = readOrder(yaml, classes, yaml.required(yaml.root(), "best_to_worst"));
   const YAML::Node list = yaml.root()["rates"];

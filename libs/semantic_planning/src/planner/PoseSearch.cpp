@@ -36,12 +36,11 @@ std::uint64_t bits(double number, double size, int count) {
   return static_cast<std::uint64_t>(whole) & ((std::uint64_t{1} << count) - 1);
 }
 
-/** Looks from pose to pose for the cheapest way to one of some targets, in so many poses at most:
- * best first over short arcs and straights in both gears, of which those between poses that are
- * much the same are dropped (as in Dolgov et al., "Path Planning for Autonomous Vehicles in Unknown
- * Semi-structured Environments", 2010), and from these poses to the targets by the vehicle's
- * shortest curves. What a CostField says of the rest of the way tells what is worth going on with.
- */
+/** Looks from pose to pose for the cheapest way to one of some targets, in so many poses at most.
+ * It goes best first over short arcs and straights in both gears, and from poses to the targets by
+ * the vehicle's shortest curves. What a CostField says of the rest of the way tells what is worth
+ * going on with. Poses much like earlier ones are dropped (Dolgov et al., "Path Planning for
+ * Autonomous Vehicles in Unknown Semi-structured Environments", 2010). */
 class PoseSearch {
  public:
   /** A place where the way may end. */

@@ -11,10 +11,9 @@ using semantic_octree::ReadLock;
 
 void PlannerOptions::describe(strict_files::OptionList& list) {
   roadmap.describe(list);
-  list.add("shorten", shorten, "",
-           "look for the path of least price; without: take the graph's best path");
+  list.add("shorten", shorten, "", "look for a path of less price beside the graph's best one");
   list.add("strict", strict, "",
-           "no way through a worse class is taken to save length (all rates in the order are inf)");
+           "never go through a worse class to save length (as if all rates in the order were inf)");
   ground.describe(list);
 }
 

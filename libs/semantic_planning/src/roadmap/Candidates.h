@@ -65,8 +65,7 @@ std::vector<Column> tilesIn(const PlanningRegion& region, const Ground& ground);
 struct CandidatePoint {
   Column column;
   int z = 0;  ///< key of its surface
-  /** Those with smaller numbers go first, [0, 1). However many are taken, they are spread evenly.
-   */
+  /** [0, 1). Points with smaller numbers go first: however many are taken, they spread evenly. */
   double priority = 0;
 
   auto key() const { return std::tuple(priority, column.x, column.y, z); }

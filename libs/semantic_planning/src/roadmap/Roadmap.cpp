@@ -247,7 +247,7 @@ void RoadmapOptions::describe(strict_files::OptionList& list) {
            "Halton sequence, or draws until N are on drivable ground");
   list.add("vertices", vertices, "", "number of vertices (N); 0: all that the map has");
   list.add("buffer", buffer, "m", buffers,
-           "distance of vertices from the line from start to goal, at most");
+           "greatest distance of vertices from the line between start and goal");
 }
 
 void RoadmapOptions::validate() const { strict_files::checkOptions(*this, "RoadmapOptions"); }

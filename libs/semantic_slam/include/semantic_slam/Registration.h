@@ -63,7 +63,7 @@ class Submap {
      * the cube, and at least 0. A surface that goes on beyond says nothing along itself. */
     Eigen::Matrix3d evidence;
   };
-  /** Those in a point's cube and in the six beside, of its class. */
+  /** Distributions of a point's class, in its cube and in the six beside. */
   struct Near {
     KeyNumbers::Key key = UINT64_MAX;  ///< of the cube
     int size = 0;
@@ -88,7 +88,7 @@ class Submap {
 
  private:
   using Key = KeyNumbers::Key;
-  /** Of the points of a class in a cube. */
+  /** Sums over the points of a class in a cube. */
   struct Sum {
     double n = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -133,13 +133,13 @@ struct Registration {
 };
 
 /** Where a scan was taken, by what others saw: the distances of its points to the distributions of
- * their classes become least (P2D-NDT: Magnusson, "The Three-Dimensional Normal-Distributions
- * Transform"; with classes as in Zaganidis et al., "Integrating Deep Semantic Segmentation into 3-D
- * Point Cloud Registration"), Gauss-Newton with Geman and McClure's weights.
- * Of the points in a cube half as large as the finest submap's one is taken, for a coarser submap
- * half as large as the next finer one's; of those in a plane, all.
- * \param submaps of the same points, coarse ones first; each begins where the one before ended
- * \param prior information of the guess, frame of the scan */
+ * their classes become least, by Gauss-Newton with Geman and McClure's weights. (P2D-NDT:
+ * Magnusson, "The Three-Dimensional Normal-Distributions Transform"; with classes as in Zaganidis
+ * et al., "Integrating Deep Semantic Segmentation into 3-D Point Cloud Registration".) One point is
+ * taken of each cube half as large as the finest submap's, or for a coarser submap as the next
+ * finer one's. Scans in a plane are taken whole. \param submaps of the same points, coarse ones
+ * first; each begins where the one before ended \param prior information of the guess, frame of the
+ * scan */
 Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,
                           const Eigen::Isometry3d& T_submap_guess,
                           const Matrix6& prior = Matrix6::Zero());

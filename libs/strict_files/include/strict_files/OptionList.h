@@ -55,8 +55,8 @@ struct Option {
   std::function<void()> check = {};
 };
 
-/** The options of a struct, described once: from this list follow how they are read from .ini
- * files, YAML and command lines, what is allowed, and their page in the handbook.
+/** The options of a struct, described once. How they are read from .ini files, YAML and command
+ * lines, what is allowed, and their page in the handbook follow from this list.
  *
  *     void GroundOptions::describe(strict_files::OptionList& list) {
  *       list.add("step", step, "m", atLeast(0), "highest step that the wheels take");

@@ -14,7 +14,7 @@ namespace semantic_octree {
 
 using VoxelBits = std::uint64_t;
 
-/** Those of an octant, one of a block's eight. */
+/** The bits of one of a block's eight octants. */
 inline std::uint8_t octantOf(VoxelBits bits, int octant) {
   return static_cast<std::uint8_t>(bits >> 8 * octant);
 }
@@ -226,7 +226,7 @@ class NodeStore {
 
   /** Bytes of nodes, records and bookkeeping in use; what is set aside for more is not counted. */
   std::size_t bytes() const;
-  /** Those of so many nodes, if they take as much as those that are in memory. */
+  /** What so many nodes would take at the mean of the nodes that are in memory. */
   std::size_t expectedBytes(long nodes) const {
     return bytes() / (numNodes() - static_cast<std::size_t>(m_awayNodes) + 1) *
            static_cast<std::size_t>(nodes);

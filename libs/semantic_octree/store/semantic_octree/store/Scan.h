@@ -149,7 +149,7 @@ class Scan {
   };
   /** \param tile key of a voxel in it / 8 */
   Tile tile(const VoxelIndex& tile) const;
-  /** Those in which anything was seen; none if there are no voxels. */
+  /** Tiles in which anything was seen; none if there are no voxels. */
   std::vector<VoxelIndex> tiles() const;
   bool hasVoxels() const { return report().hitVoxels + report().freeVoxels > 0; }
   /** Forgets the voxels, keeps the buffers. */

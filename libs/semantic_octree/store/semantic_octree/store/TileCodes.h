@@ -61,7 +61,7 @@ class TileBox {
   VoxelIndex m_lowest = VoxelIndex::Constant(kNumKeys), m_highest = -m_lowest;
 };
 
-/** Those of some tiles that are below a node. */
+/** The codes of those tiles that lie below a node. */
 struct TileRange {
   TileCodes::const_iterator first, last;
 
