@@ -95,10 +95,9 @@ class CollisionChecker::Sweep {
     const bool wasFree = m_room.ofDiscs > 0;
     if (!(column == m_column) && !enter(column)) return false;
     if (wasFree && m_room.ofDiscs == 0) placeDiscs();
-    m_last = placed;
-    if (m_room.ofDiscs > 0) return true;
-    for (std::size_t i = 0; i < m_discs.size(); ++i)
+    for (std::size_t i = 0; m_room.ofDiscs == 0 && i < m_discs.size(); ++i)
       if (!move(m_checker.m_discs[i], placed, m_z != before, m_discs[i])) return false;
+    m_last = placed;
     return true;
   }
 
@@ -126,20 +125,15 @@ class CollisionChecker::Sweep {
   std::optional<ClassId> worst() const { return m_worst; }
 
  private:
-  struct At {
-    double x, y;  ///< meters
-    Column column;
-  };
-
   /** A thread's sweeps come one after another, and most are short: to ask for memory each time
    * would be a good part of their time. */
-  static std::vector<At>& discsOfThread() {
-    thread_local std::vector<At> discs;
+  static std::vector<Column>& discsOfThread() {
+    thread_local std::vector<Column> discs;
     return discs;
   }
 
   /** Of columns between, where there was room, each is at most a step from the next one. */
-  bool enter(Column column) {
+  [[gnu::noinline]] bool enter(Column column) {
     const int columns =
         m_room.ofDiscs > 0
             ? std::max(std::abs(column.x - m_column.x), std::abs(column.y - m_column.y))
@@ -154,34 +148,39 @@ class CollisionChecker::Sweep {
     return true;
   }
 
+  Column columnOf(const CheckedDisc& d, const Placement& placed) const {
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
+    return m_checker.m_ground.columnAt(x, y);
+  }
+
   /** Where they were last. */
   void placeDiscs() {
     m_discs.clear();
-    for (const CheckedDisc& d : m_checker.m_discs) {
-      const auto [x, y] = m_last(d.disc.x, d.disc.y);
-      m_discs.push_back({x, y, m_checker.m_ground.columnAt(x, y)});
-    }
+    for (const CheckedDisc& d : m_checker.m_discs) m_discs.push_back(columnOf(d, m_last));
   }
 
-  bool move(const CheckedDisc& d, const Placement& placed, bool climbs, At& disc) {
-    const auto [x, y] = placed(d.disc.x, d.disc.y);
-    const Column column = m_checker.m_ground.columnAt(x, y);
-    if (climbs || !(column == disc.column)) {
-      if (!m_checker.isFree(d, column, m_z)) return false;
-      if (column.x != disc.column.x && column.y != disc.column.y &&
-          !m_checker.isFree(
-              d, between(m_checker.m_ground, disc.column, {disc.x, disc.y}, column, {x, y}), m_z))
-        return false;
-      disc.column = column;
-    }
-    disc.x = x, disc.y = y;
+  bool move(const CheckedDisc& d, const Placement& placed, bool climbs, Column& last) const {
+    const Column column = columnOf(d, placed);
+    if (!climbs && column == last) return true;
+    if (!m_checker.isFree(d, column, m_z)) return false;
+    if (column.x != last.x && column.y != last.y && !isFreeBetween(d, last, column, placed))
+      return false;
+    last = column;
     return true;
+  }
+
+  [[gnu::noinline]] bool isFreeBetween(const CheckedDisc& d, Column last, Column column,
+                                       const Placement& placed) const {
+    const auto [fromX, fromY] = m_last(d.disc.x, d.disc.y);
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
+    const Column corner = between(m_checker.m_ground, last, {fromX, fromY}, column, {x, y});
+    return m_checker.isFree(d, corner, m_z);
   }
 
   const CollisionChecker& m_checker;
   int m_z;
   Column m_column;
-  std::vector<At>& m_discs;
+  std::vector<Column>& m_discs;  ///< where they are
   Placement m_last;
   OpenGround::Room m_room;  ///< where it has some, the discs' places are not known
   WheelColumns m_wheels;
@@ -286,7 +285,8 @@ std::optional<EdgeProfile> CollisionChecker::profile(const ReedsSheppCurve& curv
                                                      ClassBudget* budget) const {
   const int n = std::max(1, static_cast<int>(std::ceil(curve.length() / m_piece)));
   const double piece = curve.length() / n;
-  Lengths lengths{};
+  Lengths lengths;
+  std::fill_n(lengths.begin(), m_order.classes(), 0);
   Sweep sweep(*this, Placement(curve.from()), from);
   const auto fits = [&](const Placement& placed) { return sweep.moveTo(placed); };
   const auto counts = [&](const Placement& placed, int left) {
