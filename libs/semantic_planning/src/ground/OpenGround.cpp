@@ -26,7 +26,7 @@ class Square {
         const std::vector<std::uint8_t> before = m_numbers;
         const std::size_t end = before.size() - 2 * static_cast<std::size_t>(more * stride);
         const std::uint8_t *const low = before.data(), *const here = low + more * stride,
-                                 *const high = here + more * stride;
+                                  *const high = here + more * stride;
         std::uint8_t* __restrict const to = m_numbers.data() + more * stride;
         for (std::size_t i = 0; i < end; ++i) to[i] = better(here[i], better(low[i], high[i]));
       }
@@ -42,7 +42,8 @@ class Square {
   template <class F, class... Rows>
   void combineRows(F f, std::uint8_t* __restrict own, const Rows*... others) {
     const std::size_t end = m_numbers.size();
-    for (std::size_t i = 0; i < end; ++i) own[i] = static_cast<std::uint8_t>(f(own[i], others[i]...));
+    for (std::size_t i = 0; i < end; ++i)
+      own[i] = static_cast<std::uint8_t>(f(own[i], others[i]...));
   }
 
   int m_edge;
@@ -78,10 +79,10 @@ OpenGround::Rooms OpenGround::find(Column tile) const {
   const int base = own.empty() ? 0 : own.front().z - 128;
   Square z(edge), leastClass(edge), free(edge);
   for (int y = 0; y < edge; ++y) {
-    std::uint8_t *const zs = z.row(y), *const classes = leastClass.row(y), *const frees = free.row(y);
+    std::uint8_t *const zs = z.row(y), *const classes = leastClass.row(y),
+                        *const frees = free.row(y);
     for (int x = 0; x < edge; ++x) {
-      const SurfaceRange range =
-          surfacesAt(window, {first.x - margin + x, first.y - margin + y});
+      const SurfaceRange range = surfacesAt(window, {first.x - margin + x, first.y - margin + y});
       if (range.last - range.first != 1) continue;
       const Surface s = *range.first;
       if (s.z <= base || s.z > base + 254) continue;  // far above or below: as if there were none
@@ -101,7 +102,8 @@ OpenGround::Rooms OpenGround::find(Column tile) const {
     lowest.spread(within.columns - spread, lower), highest.spread(within.columns - spread, higher);
     spread = within.columns;
     where.combine(
-        [most = static_cast<std::uint8_t>(within.tolerance)](auto is, auto low, auto here, auto high) {
+        [most = static_cast<std::uint8_t>(within.tolerance)](auto is, auto low, auto here,
+                                                             auto high) {
           const std::uint8_t up = high - here, down = here - low;
           return static_cast<std::uint8_t>(is & (higher(up, down) <= most));
         },

@@ -24,7 +24,8 @@ class OpenGround {
     int columns, tolerance;
   };
 
-  /** \param wheels reach no farther than the discs \param needed2 what the surfaces below discs need (Surface::clearance2) */
+  /** \param wheels reach no farther than the discs \param needed2 what the surfaces below discs
+   * need (Surface::clearance2) */
   OpenGround(const Ground& ground, const Reach& discs, const Reach& wheels, int needed2);
 
   Room around(Column c);

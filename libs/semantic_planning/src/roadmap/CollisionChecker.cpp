@@ -134,10 +134,9 @@ class CollisionChecker::Sweep {
 
   /** Of columns between, where there was room, each is at most a step from the next one. */
   [[gnu::noinline]] bool enter(Column column) {
-    const int columns =
-        m_room.ofDiscs > 0
-            ? std::max(std::abs(column.x - m_column.x), std::abs(column.y - m_column.y))
-            : 1;
+    const int columns = m_room.ofDiscs > 0 ? std::max(std::abs(column.x - m_column.x),
+                                                      std::abs(column.y - m_column.y))
+                                           : 1;
     const Surface* s = m_checker.near(column, m_z, columns * m_checker.m_ground.step());
     if (!s) return false;
     m_z = s->z;
