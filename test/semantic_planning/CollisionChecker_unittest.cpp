@@ -110,10 +110,22 @@ PaintedWorld roughWorld() {
   return world;
 }
 
+/** Climbs a voxel each meter, with a road straight up. */
+PaintedWorld slope() {
+  PaintedWorld world;
+  for (int i = 0; i < 16; ++i) {
+    world.box(i - 8, 8, -8, 8, 0.2 * i, 0.2 * (i + 1), PaintedWorld::Grass);
+    world.box(i - 8, 8, -1, 1.2, 0.2 * i, 0.2 * (i + 1), PaintedWorld::Road);
+  }
+  return world;
+}
+
 }  // namespace
 
 class CollisionCheckerTest : public testing::Test {
  protected:
+  explicit CollisionCheckerTest(PaintedWorld painted = roughWorld()) : world(std::move(painted)) {}
+
   std::optional<GroundPose> draw() {
     std::uniform_real_distribution<double> at(-8, 8), heading(-M_PI, M_PI);
     return checker.place({at(random), at(random), heading(random)});
@@ -147,8 +159,32 @@ class CollisionCheckerTest : public testing::Test {
     }
   }
 
+  void expectAlikeOfSearch() {
+    const CollisionChecker ofSearch = checker.forSearch();
+    const auto lengths = [](const CollisionChecker& asked, const GroundPose& a, const GroundPose& b,
+                            double budget) {
+      ClassBudget left{{0, 0, 1, 0.5, 2}, budget};
+      std::vector<std::pair<ClassId, std::int64_t>> all;
+      const auto profile =
+          asked.profile(asked.motionCost().shortest(a.pose, b.pose), a.z, b.z, &left);
+      for (const auto& part : profile.value_or(EdgeProfile()))
+        all.emplace_back(part.classId, part.length);
+      return all;
+    };
+    for (int i = 0; i < 20000; ++i) {
+      const auto a = i % 2 ? draw() : drawAligned(), b = i % 2 ? draw() : drawAligned();
+      if (!a || !b || !isNear(*a, *b)) continue;
+      const double budget = i % 3 ? 100 : 0.5;
+      const auto found = lengths(ofSearch, *a, *b, budget);
+      ASSERT_EQ(found, lengths(checker, *a, *b, budget)) << a->pose << " to " << b->pose;
+      ++(found.empty() ? blocked : free);
+    }
+    EXPECT_GT(free, 500);
+    EXPECT_GT(blocked, 500);
+  }
+
   static inline const double kUnits = double(colored_graph::lengthUp(1.0));
-  PaintedWorld world = roughWorld();
+  PaintedWorld world;
   colored_graph::ClassOrder order{5, {{1}, {2}, {4}, {0}}};
   VehicleOptions vehicle;
   Ground ground{world.map(), vehicle, {}, order};
@@ -201,26 +237,11 @@ TEST_F(CollisionCheckerTest, answersSeveralThreadsAsOne) {
   for (auto& f : found) EXPECT_TRUE(f.get() == expected);
 }
 
-TEST_F(CollisionCheckerTest, ofASearchAnswersAlike) {
-  const CollisionChecker ofSearch = checker.forSearch();
-  const auto lengths = [](const CollisionChecker& asked, const GroundPose& a, const GroundPose& b,
-                          double budget) {
-    ClassBudget left{{0, 0, 1, 0.5, 2}, budget};
-    std::vector<std::pair<ClassId, std::int64_t>> all;
-    const auto profile =
-        asked.profile(asked.motionCost().shortest(a.pose, b.pose), a.z, b.z, &left);
-    for (const auto& part : profile.value_or(EdgeProfile()))
-      all.emplace_back(part.classId, part.length);
-    return all;
-  };
-  for (int i = 0; i < 20000; ++i) {
-    const auto a = i % 2 ? draw() : drawAligned(), b = i % 2 ? draw() : drawAligned();
-    if (!a || !b || !isNear(*a, *b)) continue;
-    const double budget = i % 3 ? 100 : 0.5;
-    const auto found = lengths(ofSearch, *a, *b, budget);
-    ASSERT_EQ(found, lengths(checker, *a, *b, budget)) << a->pose << " to " << b->pose;
-    ++(found.empty() ? blocked : free);
-  }
-  EXPECT_GT(free, 500);
-  EXPECT_GT(blocked, 500);
-}
+TEST_F(CollisionCheckerTest, ofASearchAnswersAlike) { expectAlikeOfSearch(); }
+
+class CollisionCheckerOnSlopeTest : public CollisionCheckerTest {
+ protected:
+  CollisionCheckerOnSlopeTest() : CollisionCheckerTest(slope()) {}
+};
+
+TEST_F(CollisionCheckerOnSlopeTest, ofASearchAnswersAlike) { expectAlikeOfSearch(); }

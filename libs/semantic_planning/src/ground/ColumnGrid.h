@@ -44,7 +44,10 @@ class ColumnGrid {
   std::size_t size() const { return m_tiles.size(); }
   std::int32_t numberOf(Column tile) const {
     const int x = tile.x - m_first.x, y = tile.y - m_first.y;
-    return x < 0 || y < 0 || x >= m_width || y >= m_height ? kNoTile : y * m_width + x;
+    const auto isWithin = [](int at, int size) {
+      return static_cast<unsigned>(at) < static_cast<unsigned>(size);
+    };
+    return isWithin(x, m_width) && isWithin(y, m_height) ? y * m_width + x : kNoTile;
   }
   Column tileOfNumber(std::int32_t number) const {
     return {m_first.x + number % m_width, m_first.y + number / m_width};

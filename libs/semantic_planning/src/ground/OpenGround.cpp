@@ -1,6 +1,7 @@
 #include "OpenGround.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "GroundTiles.h"
@@ -9,12 +10,11 @@ namespace semantic_planning {
 
 namespace {
 
-/** Numbers on a square of columns, row by row. */
+/** Small numbers on a square of columns, row by row: many of them are looked at at a time. */
 class Square {
  public:
-  Square(int edge, std::int16_t number)
-      : m_edge(edge), m_numbers(static_cast<std::size_t>(edge * edge), number) {}
-  std::int16_t& at(int x, int y) { return m_numbers[static_cast<std::size_t>(y * m_edge + x)]; }
+  explicit Square(int edge) : m_edge(edge), m_numbers(static_cast<std::size_t>(edge * edge)) {}
+  std::uint8_t* row(int y) { return m_numbers.data() + y * m_edge; }
 
   /** Replaces each number by that which better(l, r) chooses of those within some columns along x
    * and y; what is nearer to the border than that is none of these. */
@@ -23,31 +23,43 @@ class Square {
     for (const int stride : {1, m_edge})
       for (int done = 0, more = 0; done < reach; done += more) {
         more = std::min(2 * done + 1, reach - done);
-        const std::vector<std::int16_t> before = m_numbers;
+        const std::vector<std::uint8_t> before = m_numbers;
         const std::size_t end = before.size() - 2 * static_cast<std::size_t>(more * stride);
-        const std::int16_t *const low = before.data(), *const here = low + more * stride,
+        const std::uint8_t *const low = before.data(), *const here = low + more * stride,
                                   *const high = here + more * stride;
-        std::int16_t* __restrict const to = m_numbers.data() + more * stride;  // many at a time
+        std::uint8_t* __restrict const to = m_numbers.data() + more * stride;
         for (std::size_t i = 0; i < end; ++i) to[i] = better(here[i], better(low[i], high[i]));
       }
   }
 
+  /** Replaces each number by f(it, the others' at its place). */
+  template <class F, class... Squares>
+  void combine(F f, const Squares&... others) {
+    combineRows(f, m_numbers.data(), others.m_numbers.data()...);
+  }
+
  private:
+  template <class F, class... Rows>
+  void combineRows(F f, std::uint8_t* __restrict own, const Rows*... others) {
+    const std::size_t end = m_numbers.size();
+    for (std::size_t i = 0; i < end; ++i)
+      own[i] = static_cast<std::uint8_t>(f(own[i], others[i]...));
+  }
+
   int m_edge;
-  std::vector<std::int16_t> m_numbers;
+  std::vector<std::uint8_t> m_numbers;
 };
 
-constexpr auto lower = [](std::int16_t a, std::int16_t b) { return a < b ? a : b; };
-constexpr auto higher = [](std::int16_t a, std::int16_t b) { return a > b ? a : b; };
-
-constexpr std::int16_t kBelowAll = std::numeric_limits<std::int16_t>::min(),
-                       kAboveAll = std::numeric_limits<std::int16_t>::max();
+constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
+constexpr auto lower = [](std::uint8_t a, std::uint8_t b) { return a < b ? a : b; };
+constexpr auto higher = [](std::uint8_t a, std::uint8_t b) { return a > b ? a : b; };
 
 }  // namespace
 
-OpenGround::OpenGround(const Ground& ground, const Reach& reach, int needed2)
+OpenGround::OpenGround(const Ground& ground, const Reach& discs, const Reach& wheels, int needed2)
     : m_ground(ground),
-      m_reach(reach),
+      m_discs(discs),
+      m_wheels(wheels),
       m_needed2(needed2),
       m_tiles(ground.layers().surfaces().size()) {}
 
@@ -60,40 +72,56 @@ OpenGround::Room OpenGround::around(Column c) {
 }
 
 OpenGround::Rooms OpenGround::find(Column tile) const {
-  const int reach = std::max(m_reach.ofDiscs, m_reach.ofWheels), margin = kFarthest + reach,
-            edge = kTileEdge + 2 * margin, step = m_ground.step();
-  const Column first = firstColumnOf(tile), low{first.x - margin, first.y - margin};
-  Square z(edge, 0), lowest(edge, kBelowAll), highest(edge, kAboveAll), fits(edge, 0),
-      leastClass(edge, kBelowAll), largestClass(edge, kAboveAll);
-  for (int y = 0; y < edge; ++y)
+  const int margin = kFarthest + m_discs.columns, edge = kTileEdge + 2 * margin;
+  const SurfaceWindow window(m_ground.layers().surfaces(), tile, margin);
+  const Column first = firstColumnOf(tile);
+  const std::vector<Surface>& own = window.around(first).surfaces;
+  const int base = own.empty() ? 0 : own.front().z - 128;
+  Square z(edge), leastClass(edge), free(edge);
+  for (int y = 0; y < edge; ++y) {
+    std::uint8_t *const zs = z.row(y), *const classes = leastClass.row(y),
+                        *const frees = free.row(y);
     for (int x = 0; x < edge; ++x) {
-      const SurfaceRange range = m_ground.surfaces({low.x + x, low.y + y});
+      const SurfaceRange range = surfacesAt(window, {first.x - margin + x, first.y - margin + y});
       if (range.last - range.first != 1) continue;
-      const Surface& s = *range.first;
-      z.at(x, y) = lowest.at(x, y) = highest.at(x, y) = static_cast<std::int16_t>(s.z + kBelowAll);
-      leastClass.at(x, y) = largestClass.at(x, y) = s.classId;
-      fits.at(x, y) = s.drivable && s.clearance2 >= m_needed2;
+      const Surface s = *range.first;
+      if (s.z <= base || s.z > base + 254) continue;  // far above or below: as if there were none
+      zs[x] = static_cast<std::uint8_t>(s.z - base);
+      classes[x] = s.classId;
+      frees[x] = s.drivable && s.clearance2 >= m_needed2;
     }
-  lowest.spread(reach, lower), highest.spread(reach, higher);
-  fits.spread(m_reach.ofDiscs, lower);
-  leastClass.spread(m_reach.ofWheels, lower), largestClass.spread(m_reach.ofWheels, higher);
-  Square free(edge, 0), uniform(edge, 0);
-  for (int y = reach; y < edge - reach; ++y)
-    for (int x = reach; x < edge - reach; ++x) {
-      if (highest.at(x, y) - z.at(x, y) > step || z.at(x, y) - lowest.at(x, y) > step) continue;
-      free.at(x, y) = fits.at(x, y);
-      uniform.at(x, y) = leastClass.at(x, y) == largestClass.at(x, y);
-    }
-  Rooms rooms{};
+  }
+  Square lowest = z, highest = z, largestClass = leastClass, uniform = z;
+  constexpr auto orMost = [](auto number, auto height) { return height ? number : kMost; };
+  highest.combine(orMost, z), largestClass.combine(orMost, z);
+  free.spread(m_discs.columns, lower);
+  leastClass.spread(m_wheels.columns, lower), largestClass.spread(m_wheels.columns, higher);
+  uniform.combine([](auto, auto l, auto h) { return l == h; }, leastClass, largestClass);
+  int spread = 0;
+  const auto keepLevel = [&](Square& where, const Reach& within) {
+    lowest.spread(within.columns - spread, lower), highest.spread(within.columns - spread, higher);
+    spread = within.columns;
+    where.combine(
+        [most = static_cast<std::uint8_t>(within.tolerance)](auto is, auto low, auto here,
+                                                             auto high) {
+          const std::uint8_t up = high - here, down = here - low;
+          return static_cast<std::uint8_t>(is & (higher(up, down) <= most));
+        },
+        lowest, z, highest);
+  };
+  const Reach nextStep{1, m_ground.step()};
+  keepLevel(free, nextStep), keepLevel(uniform, nextStep);
+  keepLevel(uniform, m_wheels), keepLevel(free, m_discs);
+  Square ofDiscs(edge), ofClass(edge);
   for (int distance = 1; distance <= kFarthest; ++distance) {
-    for (int y = 0; y < kTileEdge; ++y)
-      for (int x = 0; x < kTileEdge; ++x) {
-        Room& room = rooms[static_cast<std::size_t>(y * kTileEdge + x)];
-        if (free.at(margin + x, margin + y)) ++room.ofDiscs;
-        if (uniform.at(margin + x, margin + y)) ++room.ofClass;
-      }
+    ofDiscs.combine(std::plus<>(), free), ofClass.combine(std::plus<>(), uniform);
     free.spread(1, lower), uniform.spread(1, lower);
   }
+  Rooms rooms;
+  for (int y = 0; y < kTileEdge; ++y)
+    for (int x = 0; x < kTileEdge; ++x)
+      rooms[static_cast<std::size_t>(y * kTileEdge + x)] = {ofDiscs.row(margin + y)[margin + x],
+                                                            ofClass.row(margin + y)[margin + x]};
   return rooms;
 }
 

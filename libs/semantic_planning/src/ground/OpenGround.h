@@ -18,13 +18,15 @@ class OpenGround {
   struct Room {
     std::uint8_t ofDiscs = 0, ofClass = 0;
   };
-  /** Columns from the vehicle's origin that its discs or wheels come to. */
+  /** Columns from the vehicle's origin that its discs or wheels come to, and by how many voxels
+   * ground may be higher or lower there. */
   struct Reach {
-    int ofDiscs, ofWheels;
+    int columns, tolerance;
   };
 
-  /** \param needed2 what the surfaces below discs need (Surface::clearance2) */
-  OpenGround(const Ground& ground, const Reach& reach, int needed2);
+  /** \param wheels reach no farther than the discs \param needed2 what the surfaces below discs
+   * need (Surface::clearance2) */
+  OpenGround(const Ground& ground, const Reach& discs, const Reach& wheels, int needed2);
 
   Room around(Column c);
 
@@ -35,7 +37,7 @@ class OpenGround {
   Rooms find(Column tile) const;
 
   const Ground& m_ground;
-  const Reach m_reach;
+  const Reach m_discs, m_wheels;
   const int m_needed2;
   std::vector<std::unique_ptr<Rooms>> m_tiles;  ///< by number; null: not found yet
 };

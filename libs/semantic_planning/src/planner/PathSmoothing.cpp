@@ -119,6 +119,10 @@ struct Replacement {
   std::size_t leave;  ///< which one
   double leaves;
   TangentArc tangent;
+
+  bool operator<(const Replacement& o) const {
+    return std::tie(o.gain, before, after, leave) < std::tie(gain, o.before, o.after, o.leave);
+  }
 };
 
 class Smoothing {
@@ -202,20 +206,43 @@ class Smoothing {
     return profile.has_value();
   }
 
+  /** What was proposed before and is not near what changed stays. */
   bool improve() {
-    std::vector<Replacement> replacements;
     for (std::size_t a = 0; a < m_parts.size(); ++a)
       for (std::size_t b = a + 1; b < m_parts.size() && b <= a + 1 + kMostReplaced; ++b) {
         if (m_parts[b - 1].arc.length < 0 || m_parts[b].arc.length < 0) break;
-        if (b > a + 1) propose(a, b, replacements);
+        if (b > a + 1 && isNew(a, b)) propose(a, b);
       }
-    std::stable_sort(replacements.begin(), replacements.end(),
-                     [](const auto& l, const auto& r) { return l.gain > r.gain; });
-    return std::any_of(replacements.begin(), replacements.end(),
-                       [this](const Replacement& r) { return apply(r); });
+    m_firstNew = m_numbers;
+    std::sort(m_replacements.begin(), m_replacements.end());
+    const std::size_t parts = m_parts.size();
+    const auto applied = std::find_if(m_replacements.begin(), m_replacements.end(),
+                                      [this](const Replacement& r) { return apply(r); });
+    if (applied == m_replacements.end()) return false;
+    keepBeside(applied->before, applied->after, m_parts.size() - parts);
+    return true;
   }
 
-  void propose(std::size_t a, std::size_t b, std::vector<Replacement>& replacements) const {
+  /** Whether parts between two are, or one next to these. */
+  bool isNew(std::size_t a, std::size_t b) const {
+    const auto begin = m_parts.begin();
+    return std::any_of(begin + static_cast<std::ptrdiff_t>(a - std::min<std::size_t>(a, 1)),
+                       begin + static_cast<std::ptrdiff_t>(std::min(b + 2, m_parts.size())),
+                       [this](const Part& p) { return p.number >= m_firstNew; });
+  }
+
+  /** What is proposed where no part came or went. \param more parts than before, modulo 2^64 */
+  void keepBeside(std::size_t before, std::size_t after, std::size_t more) {
+    const auto touches = [=](const Replacement& r) {
+      return r.after + 1 >= before && r.before <= after + 1;
+    };
+    m_replacements.erase(std::remove_if(m_replacements.begin(), m_replacements.end(), touches),
+                         m_replacements.end());
+    for (Replacement& r : m_replacements)
+      if (r.before > after) r.before += more, r.after += more;
+  }
+
+  void propose(std::size_t a, std::size_t b) {
     const Arc &before = m_parts[a].arc, &after = m_parts[b].arc;
     const double most = 1 / m_checker.reedsShepp().turningRadius();
     for (std::size_t i = 0; i < kLeaves.size(); ++i) {
@@ -226,7 +253,7 @@ class Smoothing {
         continue;
       Replacement r{0, a, b, i, leaves, *tangent};
       r.gain = gainOf(r);
-      if (r.gain > kLeastGain) replacements.push_back(r);
+      if (r.gain > kLeastGain) m_replacements.push_back(r);
     }
   }
 
@@ -324,9 +351,10 @@ class Smoothing {
   const std::vector<double> m_perMeter;
   ClassBudget m_budget;
   std::vector<Part> m_parts;
+  std::vector<Replacement> m_replacements;
   std::set<std::tuple<int, int, std::size_t>> m_seen;
   int m_end = 0;  ///< key of the surface where the path ends
-  int m_numbers = 0, m_looks = 2000;
+  int m_numbers = 0, m_firstNew = 0, m_looks = 2000;
 };
 
 }  // namespace

@@ -179,18 +179,24 @@ PlanResult PlannerCore::plan(const Place& start, const Place& goal) {
   checkFinite("goal", goal);
   const Change change(*this);
   if (const auto refused = prepare(start, goal, clock)) return *refused;
-  return take(solve({m_checker.forSearch(), *m_startPose, *m_goalPose, {}}, clock), clock);
+  return take(solve({checkerOfSearch(), *m_startPose, *m_goalPose, {}}, clock), clock);
 }
 
 void PlannerCore::standAt(const Place& start) {
   const auto assume = [this](const std::vector<GroundPoint>& points) {
     const std::vector<Column> tiles = m_ground.assume(points);
+    if (!tiles.empty()) m_checkerOfSearch.reset();
     if (m_candidates && !tiles.empty()) m_candidates->update({}, tiles);
   };
   assume({});
   const PlanStatus status = placed(start, m_startPose);
   if (status != PlanStatus::StartOffGround && status != PlanStatus::StartBlocked) return;
   assume(groundBelow(m_ground, m_options.vehicle, start.pose, start.z));
+}
+
+const CollisionChecker& PlannerCore::checkerOfSearch() {
+  if (!m_checkerOfSearch) m_checkerOfSearch.emplace(m_checker.forSearch());
+  return *m_checkerOfSearch;
 }
 
 void PlannerCore::makeRoadmap() {
@@ -262,6 +268,7 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   MapChange change;
   change.tilesTouched = touched.tiles.size();
   change.tiles = m_ground.update(touched);
+  if (!change.tiles.empty()) m_checkerOfSearch.reset();
   clock.end("ground");
   m_kept.groundChanged(change.tiles);
   if (m_sliced)
@@ -324,7 +331,7 @@ PlanResult PlannerCore::replan(const Place& start) {
   checkReplan(start);
   const Change change(*this);
   if (const auto known = prepareAgain(start, rest)) return *known;
-  return take(solve({m_checker.forSearch(), *m_startPose, *m_goalPose, rest}, clock), clock);
+  return take(solve({checkerOfSearch(), *m_startPose, *m_goalPose, rest}, clock), clock);
 }
 
 PlannerCore::~PlannerCore() = default;
@@ -337,7 +344,7 @@ void PlannerCore::begin(const Place& start, const std::optional<Place>& goal) {
   const Change change(*this);
   m_known = goal ? prepare(start, *goal, clock) : prepareAgain(start, rest);
   if (!m_known && mayNeedRoadmap(m_options))
-    m_known = take(solve({m_checker.forSearch(), *m_startPose, *m_goalPose, rest}, clock), clock);
+    m_known = take(solve({checkerOfSearch(), *m_startPose, *m_goalPose, rest}, clock), clock);
   if (!m_known) m_sliced = std::make_unique<Sliced>(*this, std::move(rest));
 }
 

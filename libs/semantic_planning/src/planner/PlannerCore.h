@@ -88,6 +88,7 @@ class PlannerCore {
   /** Refuses if nothing can be planned between these places. */
   bool refuse(const Place& start, const Place& goal, PlanResult& result);
   colored_graph::SearchOptions searchOptions(const Roadmap& map);
+  const CollisionChecker& checkerOfSearch();
   void makeRoadmap();
   /** Puts start and goal where they are now. */
   void moveEnds(Roadmap& map);
@@ -119,6 +120,7 @@ class PlannerCore {
   const bool m_isInCorridor;
   Ground m_ground;
   CollisionChecker m_checker;
+  std::optional<CollisionChecker> m_checkerOfSearch;  ///< none since the ground changed
   const ClassPrices m_prices;
   KeptPath m_kept;
   std::optional<CandidateStore> m_candidates;  ///< if a roadmap is what it plans with

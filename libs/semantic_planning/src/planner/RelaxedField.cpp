@@ -54,9 +54,10 @@ class RelaxedSearch {
       if (estimate != cost + bound(place.column)) continue;  // there was a better way to it
       noteNearest(place.column, guide);
       Slices::count(1);
+      const bool singly = isNarrow(*place.surface), isLonger = isOnGrid(place.column);
       for (std::size_t step = 0; step < kSteps.size(); ++step) {
-        if (isNarrow(*place.surface)) take(step, 1, place, cost);
-        if (isOnGrid(place.column)) take(step, m_stride, place, cost);
+        if (singly) take(step, 1, place, cost);
+        if (isLonger) take(step, m_stride, place, cost);
       }
     }
   }
@@ -87,7 +88,7 @@ class RelaxedSearch {
                         from.column.y + columns * kSteps[step].y};
     const Place to =
         m_field.placeNear(column, from.surface->z, columns * m_checker.ground().step());
-    if (!to.surface || !(isOnGrid(column) || isNarrow(*to.surface))) return;
+    if (!to.surface || !(columns == m_stride || isNarrow(*to.surface) || isOnGrid(column))) return;
     const Label& known = m_field.label(to.cell);
     const Cost length = columns * (step % 2 ? kDiagonalStep : kStraightStep);
     if (before + length * m_weights.front() >= known.cost) return;

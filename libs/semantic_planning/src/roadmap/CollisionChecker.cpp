@@ -21,10 +21,10 @@ using mrpt::math::TPose2D;
 namespace {
 
 /** Lengths by class, meters, as integers that add up to the total. */
-inline colored_graph::EdgeProfile rounded(const std::vector<double>& lengths, double total) {
+inline colored_graph::EdgeProfile rounded(const double* lengths, int classes, double total) {
   colored_graph::EdgeProfile profile;
   colored_graph::Length left = colored_graph::lengthUp(total);
-  for (std::size_t id = 0; id < lengths.size(); ++id) {
+  for (int id = 0; id < classes; ++id) {
     if (lengths[id] <= 0) continue;
     const auto length = std::min(left, colored_graph::lengthDown(lengths[id]));
     profile.push_back({static_cast<colored_graph::GraphClass>(id), length});
@@ -90,30 +90,21 @@ class CollisionChecker::Sweep {
   int z() const { return m_z; }
 
   bool moveTo(const Placement& placed) {
-    const Ground& ground = m_checker.m_ground;
-    const Column column = ground.columnAt(placed.x, placed.y);
-    bool climbs = false;
+    const Column column = m_checker.m_ground.columnAt(placed.x, placed.y);
+    const int before = m_z;
     const bool wasFree = m_room.ofDiscs > 0;
-    if (!(column == m_column)) {
-      const Surface* s = m_checker.near(column, m_z, ground.step());
-      if (!s) return false;
-      climbs = s->z != m_z;
-      m_z = s->z;
-      m_column = column;
-      if (m_checker.m_open) m_room = m_checker.m_open->around(column);
-      if (m_room.ofClass > 0) m_worst = s->classId, m_worstZ = INT_MIN;
-    }
+    if (!(column == m_column) && !enter(column)) return false;
     if (wasFree && m_room.ofDiscs == 0) placeDiscs();
+    for (std::size_t i = 0; m_room.ofDiscs == 0 && i < m_discs.size(); ++i)
+      if (!move(m_checker.m_discs[i], placed, m_z != before, m_discs[i])) return false;
     m_last = placed;
-    if (m_room.ofDiscs > 0) return true;
-    for (std::size_t i = 0; i < m_discs.size(); ++i)
-      if (!move(m_checker.m_discs[i], placed, climbs, m_discs[i])) return false;
     return true;
   }
 
   /** How far it may be driven from where it is so that it is free and over the same class, meters.
    */
   double room() const {
+    if (m_room.ofDiscs == 0 || m_room.ofClass == 0) return 0;
     return (std::min(m_room.ofDiscs, m_room.ofClass) - 1) * m_checker.m_ground.voxelSize();
   }
 
@@ -134,46 +125,61 @@ class CollisionChecker::Sweep {
   std::optional<ClassId> worst() const { return m_worst; }
 
  private:
-  struct At {
-    double x, y;  ///< meters
-    Column column;
-  };
-
   /** A thread's sweeps come one after another, and most are short: to ask for memory each time
    * would be a good part of their time. */
-  static std::vector<At>& discsOfThread() {
-    thread_local std::vector<At> discs;
+  static std::vector<Column>& discsOfThread() {
+    thread_local std::vector<Column> discs;
     return discs;
+  }
+
+  /** Of columns between, where there was room, each is at most a step from the next one. */
+  [[gnu::noinline]] bool enter(Column column) {
+    const int columns = m_room.ofDiscs > 0 ? std::max(std::abs(column.x - m_column.x),
+                                                      std::abs(column.y - m_column.y))
+                                           : 1;
+    const Surface* s = m_checker.near(column, m_z, columns * m_checker.m_ground.step());
+    if (!s) return false;
+    m_z = s->z;
+    m_column = column;
+    if (!m_checker.m_open) return true;
+    m_room = m_checker.m_open->around(column);
+    if (m_room.ofClass > 0) m_worst = s->classId, m_worstZ = INT_MIN;
+    return true;
+  }
+
+  Column columnOf(const CheckedDisc& d, const Placement& placed) const {
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
+    return m_checker.m_ground.columnAt(x, y);
   }
 
   /** Where they were last. */
   void placeDiscs() {
     m_discs.clear();
-    for (const CheckedDisc& d : m_checker.m_discs) {
-      const auto [x, y] = m_last(d.disc.x, d.disc.y);
-      m_discs.push_back({x, y, m_checker.m_ground.columnAt(x, y)});
-    }
+    for (const CheckedDisc& d : m_checker.m_discs) m_discs.push_back(columnOf(d, m_last));
   }
 
-  bool move(const CheckedDisc& d, const Placement& placed, bool climbs, At& disc) {
-    const auto [x, y] = placed(d.disc.x, d.disc.y);
-    const Column column = m_checker.m_ground.columnAt(x, y);
-    if (climbs || !(column == disc.column)) {
-      if (!m_checker.isFree(d, column, m_z)) return false;
-      if (column.x != disc.column.x && column.y != disc.column.y &&
-          !m_checker.isFree(
-              d, between(m_checker.m_ground, disc.column, {disc.x, disc.y}, column, {x, y}), m_z))
-        return false;
-      disc.column = column;
-    }
-    disc.x = x, disc.y = y;
+  bool move(const CheckedDisc& d, const Placement& placed, bool climbs, Column& last) const {
+    const Column column = columnOf(d, placed);
+    if (!climbs && column == last) return true;
+    if (!m_checker.isFree(d, column, m_z)) return false;
+    if (column.x != last.x && column.y != last.y && !isFreeBetween(d, last, column, placed))
+      return false;
+    last = column;
     return true;
+  }
+
+  [[gnu::noinline]] bool isFreeBetween(const CheckedDisc& d, Column last, Column column,
+                                       const Placement& placed) const {
+    const auto [fromX, fromY] = m_last(d.disc.x, d.disc.y);
+    const auto [x, y] = placed(d.disc.x, d.disc.y);
+    const Column corner = between(m_checker.m_ground, last, {fromX, fromY}, column, {x, y});
+    return m_checker.isFree(d, corner, m_z);
   }
 
   const CollisionChecker& m_checker;
   int m_z;
   Column m_column;
-  std::vector<At>& m_discs;
+  std::vector<Column>& m_discs;  ///< where they are
   Placement m_last;
   OpenGround::Room m_room;  ///< where it has some, the discs' places are not known
   WheelColumns m_wheels;
@@ -217,11 +223,13 @@ CollisionChecker CollisionChecker::forSearch() const {
   // corners.
   const int discs = static_cast<int>(m_reach / m_ground.voxelSize());
   const int wheels = static_cast<int>(m_wheels.back() / m_ground.voxelSize()) + 1;
-  int needed2 = 0;
-  for (const CheckedDisc& d : m_discs) needed2 = std::max(needed2, d.needed2);
+  int needed2 = 0, tolerance = m_wheelTolerance;
+  for (const CheckedDisc& d : m_discs)
+    needed2 = std::max(needed2, d.needed2), tolerance = std::min(tolerance, d.tolerance);
   if (discs <= kMostReach)
     checker.m_open =
-        std::make_shared<OpenGround>(m_ground, OpenGround::Reach{discs, wheels}, needed2);
+        std::make_shared<OpenGround>(m_ground, OpenGround::Reach{discs, tolerance},
+                                     OpenGround::Reach{wheels, m_wheelTolerance}, needed2);
   return checker;
 }
 
@@ -276,8 +284,8 @@ std::optional<EdgeProfile> CollisionChecker::profile(const ReedsSheppCurve& curv
                                                      ClassBudget* budget) const {
   const int n = std::max(1, static_cast<int>(std::ceil(curve.length() / m_piece)));
   const double piece = curve.length() / n;
-  thread_local Lengths lengths;
-  lengths.assign(static_cast<std::size_t>(m_order.classes()), 0);
+  Lengths lengths;
+  std::fill_n(lengths.begin(), m_order.classes(), 0);
   Sweep sweep(*this, Placement(curve.from()), from);
   const auto fits = [&](const Placement& placed) { return sweep.moveTo(placed); };
   const auto counts = [&](const Placement& placed, int left) {
@@ -292,7 +300,7 @@ std::optional<EdgeProfile> CollisionChecker::profile(const ReedsSheppCurve& curv
   const bool isFree = walkCurve(curve, n, counts, fits);
   if (!isFree) return std::nullopt;
   if (std::abs(sweep.z() - to) > m_ground.step()) return std::nullopt;
-  EdgeProfile profile = rounded(lengths, curve.length());
+  EdgeProfile profile = rounded(lengths.data(), m_order.classes(), curve.length());
   if (profile.empty()) profile.push_back({classAt({curve.from(), from}), 0});  // without length
   return profile;
 }

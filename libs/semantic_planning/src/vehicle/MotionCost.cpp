@@ -70,7 +70,9 @@ ReedsSheppCurve MotionCost::shortest(const TPose2D& a, const TPose2D& b) const {
 }
 
 std::vector<ReedsSheppCurve> MotionCost::curves(const TPose2D& a, const TPose2D& b) const {
-  std::vector<ReedsSheppCurve> curves{shortest(a, b)};
+  std::vector<ReedsSheppCurve> curves;
+  curves.reserve(3);
+  curves.push_back(shortest(a, b));
   const auto isBackward = [](const auto& segment) { return segment.length < -kStandstill; };
   const auto& segments = curves.front().segments();
   if (std::none_of(segments.begin(), segments.end(), isBackward)) return curves;

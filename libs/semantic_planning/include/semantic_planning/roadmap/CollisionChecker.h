@@ -90,7 +90,7 @@ class CollisionChecker {
   double reach() const { return m_reach; }
 
  private:
-  using Lengths = std::vector<double>;  ///< meters by class
+  using Lengths = std::array<double, 256>;  ///< meters by class
 
   const Surface* near(Column c, int z, int tolerance) const;
   class Sweep;
