@@ -19,11 +19,6 @@
 
 namespace {
 
-template <class Json>
-std::string dumped(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 std::string camelCase(const std::string& name) {
   std::string word;
   for (std::size_t i = 0; i < name.size(); ++i)
@@ -47,14 +42,12 @@ nlohmann::ordered_json jsonOf(const strict_files::OptionList& options) {
   return json;
 }
 
-std::string textOf(const nlohmann::json& json) { return dumped(json); }
-std::string textOf(const nlohmann::ordered_json& json) { return dumped(json); }
-
-void writeJson(const std::filesystem::path& file, const nlohmann::json& json) {
-  strict_files::writeText(file, dumped(json));
+std::string textOf(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
+
 void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
-  strict_files::writeText(file, dumped(json));
+  strict_files::writeText(file, textOf(json));
 }
 
 namespace fs = std::filesystem;

@@ -44,11 +44,6 @@ void drawRoute(MapCanvas& canvas, const PathTracker& tracker) {
   canvas.explain({"path", kPath});
 }
 
-void drawEnd(MapCanvas& canvas, const std::string& name, const TPose2D& pose, const Arrow& arrow) {
-  canvas.drawPose(pose, arrow);
-  canvas.explain({name, arrow});
-}
-
 void drawRobot(MapCanvas& canvas, const DriveLoop& loop) {
   std::vector<Eigen::Vector2d> outline;
   for (const Eigen::Vector2d& p : loop.config().planner.vehicle.footprint) {
@@ -81,8 +76,8 @@ void shadeWhatIsLeft(MapCanvas& canvas, const Eigen::AlignedBox2d& part, DriveLo
 void drawDrive(MapCanvas& canvas, const DriveLoop& loop) {
   drawTrack(canvas, loop.record());
   drawRoute(canvas, loop.controller().tracker());
-  drawEnd(canvas, "start", loop.start(), kStart);
-  if (!loop.explores()) drawEnd(canvas, "goal", loop.goal(), kGoal);
+  canvas.drawPose(loop.start(), kStart, "start");
+  if (!loop.explores()) canvas.drawPose(loop.goal(), kGoal, "goal");
   drawRobot(canvas, loop);
 }
 

@@ -34,9 +34,9 @@ class DrivePicture {
   void include(const DriveRecord& record);
 
   map_pictures::MapCanvas draw(DriveLoop& loop) const;
-  /** The picture with title, scale and legend, all in places that stay from frame to frame. */
-  /** Only what changed in the map since the last one is drawn anew; of what is left to see, what
-   * is near that. */
+  /** The picture with title, scale and legend, all in places that stay from frame to frame. Only
+   * what changed in the map since the last one is drawn anew; of what is left to see, what is near
+   * that. */
   cv::Mat frame(DriveLoop& loop);
 
  private:

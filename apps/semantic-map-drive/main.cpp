@@ -51,24 +51,6 @@ struct Cli {
   void addEvents(CLI::App& app);
 };
 
-/** Hands each text to a function; what it throws is an error of the command line. */
-template <class Take>
-CLI::Option* addParsed(CLI::App& app, const std::string& name, const std::string& type, Take take,
-                       const std::string& description) {
-  return app
-      .add_option_function<std::vector<std::string>>(
-          name,
-          [take, name](const std::vector<std::string>& texts) {
-            try {
-              for (const std::string& text : texts) take(text);
-            } catch (const std::invalid_argument& e) {
-              throw CLI::ValidationError(name, e.what());
-            }
-          },
-          description)
-      ->type_name(type);
-}
-
 Cli::Cli(CLI::App& app) : outputs(app) {
   addWords(app.add_option("--scene,--world", scene, "Which synthetic world"),
            synthetic_world::sceneNames())
@@ -106,16 +88,19 @@ Cli::Cli(CLI::App& app) : outputs(app) {
 }
 
 void Cli::addEvents(CLI::App& app) {
-  addParsed(
-      app, "--person", "T,X,Y,X2,Y2[,T2]",
-      [this](auto& t) { events.persons.push_back(parsePerson(t)); },
+  const auto add = [&app](const char* name, const char* type, auto take, const char* help) {
+    poses::addParsed(app, name, type, take, help)
+        ->expected(1, CLI::detail::expected_max_vector_size);
+  };
+  add(
+      "--person", "T,X,Y,X2,Y2[,T2]", [this](auto& t) { events.persons.push_back(parsePerson(t)); },
       "Somebody walks from one place to another, from second T on, and is gone at T2");
-  addParsed(
-      app, "--roadblock", "T,X,Y,DEG,LENGTH",
+  add(
+      "--roadblock", "T,X,Y,DEG,LENGTH",
       [this](auto& t) { events.roadblocks.push_back(parseRoadblock(t)); },
       "A barrier across a way, from second T on");
-  addParsed(
-      app, "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
+  add(
+      "--sensor-dropout", "T,T2", [this](auto& t) { events.dropouts.push_back(parseSpan(t)); },
       "The sensors see nothing from second T to T2");
 }
 

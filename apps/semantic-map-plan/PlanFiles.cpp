@@ -45,7 +45,6 @@ void saveScene(const semantic_octree::SemanticOcTree* map, const PlanResult& pla
   semantic_map::writeScene(scene, file);
 }
 
-using namespace semantic_planning;
 using colored_graph::EdgeState;
 using map_pictures::Arrow;
 using map_pictures::MapCanvas;
@@ -169,11 +168,6 @@ void drawInTheWay(MapCanvas& canvas, const mrpt::math::TPoint2D& place) {
   canvas.explain({"in the way", kInTheWay});
 }
 
-void drawEnd(MapCanvas& canvas, const std::string& name, const TPose2D& pose, const Arrow& arrow) {
-  canvas.drawPose(pose, arrow);
-  canvas.explain({name, arrow});
-}
-
 }  // namespace
 
 cv::Mat drawPlan(MapCanvas canvas, const SemanticPlanner& planner, const PlanResult& plan,
@@ -187,8 +181,8 @@ cv::Mat drawPlan(MapCanvas canvas, const SemanticPlanner& planner, const PlanRes
   drawHoles(canvas, ground);
   if (planner.hasRoadmap()) drawGraph(canvas, planner.roadmap());
   if (plan.found()) drawPath(canvas, plan);
-  drawEnd(canvas, "start", start, kStart);
-  drawEnd(canvas, "goal", goal, kGoal);
+  canvas.drawPose(start, kStart, "start");
+  canvas.drawPose(goal, kGoal, "goal");
   for (const TPose2D& pose : {start, goal})
     drawFootprint(canvas, planner.options().vehicle.footprint, pose);
   canvas.explain({"footprint", kFootprint});
@@ -197,8 +191,6 @@ cv::Mat drawPlan(MapCanvas canvas, const SemanticPlanner& planner, const PlanRes
 }
 
 using nlohmann::json;
-using semantic_planning::PathPoint;
-using semantic_planning::PlanResult;
 using semantic_types::ClassTable;
 
 namespace {

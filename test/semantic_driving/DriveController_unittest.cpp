@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "CompressedInput.h"
+#include "PathOfArcs.h"
 #include "ReactiveSystem.h"
 #include "TemporaryFolder.h"
 #include "simulated_drive/DriveConfig.h"
@@ -28,28 +29,9 @@ ReactiveNavigator::Options optionsOf(const Footprint& footprint) {
   return options;
 }
 
-/** 12 m along x. */
-DrivePath straight() {
-  std::vector<PathPoint> points;
-  for (int i = 0; i <= 120; ++i) points.push_back({0.1 * i, 0, 0, 0, 0, true, 0, 0});
-  return DrivePath(points);
-}
-
 /** Straight on for 4 m, an arc to the left by an angle, and straight on again for 6 m. */
 DrivePath bend(double radius, double angle) {
-  constexpr double kStep = 0.1;  // m
-  std::vector<PathPoint> points;
-  const mrpt::math::TPose2D after{4 + radius * std::sin(angle), radius * (1 - std::cos(angle)),
-                                  angle};
-  for (double s = 0; s < 4; s += kStep) points.push_back({s, 0, 0, 0, 0, true, 0, 0});
-  for (double a = 0; a < angle; a += kStep / radius)
-    points.push_back(
-        {4 + radius * std::sin(a), radius * (1 - std::cos(a)), 0, a, 1 / radius, true, 0, 0});
-  for (double s = 0; s < 6; s += kStep) {
-    const mrpt::math::TPose2D p = after + mrpt::math::TPose2D(s, 0, 0);
-    points.push_back({p.x, p.y, 0, angle, 0, true, 0, 0});
-  }
-  return DrivePath(points);
+  return pathOfArcs({{4, 0}, {radius * angle, 1 / radius}, {6, 0}});
 }
 
 /** Columns of a map that somebody fills who stands in the way, 6 m ahead; map frame. */
@@ -86,7 +68,7 @@ class Drive {
 
 TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
   DriveController controller({}, optionsOf(kRobotFootprint));
-  controller.setPath(straight());
+  controller.setPath(pathOfArcs({{12, 0}}));
   Drive drive;
   int reactiveSteps = 0;
   drive.run([&](const ObstaclePoints& seen, double seconds) {

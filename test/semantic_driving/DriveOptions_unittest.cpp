@@ -4,22 +4,16 @@
 
 #include <cmath>
 
+#include "PathOfArcs.h"
 #include "TemporaryFolder.h"
 #include "simulated_drive/DriveConfig.h"
 
 using namespace semantic_driving;
-using semantic_planning::PathPoint;
 
 namespace {
 
 const std::vector<Eigen::Vector2d> kFootprint = {
     {-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}};
-
-DrivePath straight(double length) {
-  std::vector<PathPoint> points;
-  for (double x = 0; x <= length; x += 0.1) points.push_back({x, 0, 0, 0, 0, true, 0, 0});
-  return DrivePath(points);
-}
 
 /** Where a vehicle stands that drives at full speed and then is left the way to come to rest: x
  * less the end of that way, meters. */
@@ -34,7 +28,7 @@ double overshoot(double acceleration) {
       robot.drive(tracker.command(robot.state(), {}, options.maxSpeed), 0.1);
     }
   };
-  tracker.setPath(straight(60));
+  tracker.setPath(pathOfArcs({{60, 0}}));
   drive(200);
   EXPECT_NEAR(robot.state().speed, options.maxSpeed, 1e-6) << acceleration;
   tracker.locate(robot.state());

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <random>
 
+#include "Classes.h"
+
 using namespace semantic_driving;
 using Eigen::Vector2d;
 
@@ -11,12 +13,7 @@ namespace {
 
 constexpr semantic_types::ClassId kWall = 1, kPerson = 2;
 
-semantic_types::ClassTable table() {
-  semantic_types::ClassTable classes;
-  classes.add("wall", {});
-  classes.add("person", {});
-  return classes;
-}
+semantic_types::ClassTable table() { return tableOf({"wall", "person"}); }
 
 class Follower {
  public:

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <random>
 
+#include "Classes.h"
+#include "PathOfArcs.h"
 #include "StepAside.h"
 #include "simulated_drive/DriveConfig.h"
 
 using namespace semantic_driving;
 using Eigen::Vector2d;
 using mrpt::math::TPose2D;
-using semantic_planning::PathPoint;
 
 namespace {
 
@@ -29,14 +30,8 @@ struct Person {
 
 /** A quarter of a circle to the left between two straights. */
 DrivePath bent() {
-  std::vector<PathPoint> points;
-  TPose2D pose(0, 0, 0);
-  for (double s = 0; s <= 20; s += 0.1) {
-    const double curvature = s > 6 && s < 6 + 3 * M_PI / 2 ? 1 / 3.0 : 0;
-    points.push_back({pose.x, pose.y, 0, pose.phi, curvature, true, 0, 0});
-    pose = pose + TPose2D(0.1, 0, 0.1 * curvature);
-  }
-  return DrivePath(points);
+  constexpr double kArc = 3 * M_PI / 2;  // m
+  return pathOfArcs({{6, 0}, {kArc, 1 / 3.0}, {14 - kArc, 0}});
 }
 
 /** Meters between the robot and a person's body; the rectangle's corners are all it knows. */
@@ -90,8 +85,6 @@ ReactiveNavigator::Options reactive() {
 
 class Robot {
  public:
-  Robot() { m_classes.add("person", {}); }
-
   /** From the path's beginning. \param predicts the controller is told of those who move */
   Outcome drive(const std::vector<Person>& persons, bool predicts, std::uint32_t seed = 1) {
     m_begin += 1000;
@@ -121,7 +114,7 @@ class Robot {
   }
 
  private:
-  semantic_types::ClassTable m_classes;
+  const semantic_types::ClassTable m_classes = tableOf({"person"});
   DriveController m_controller{options(), reactive()};
   double m_begin = 0;  ///< s, of the next drive
 };

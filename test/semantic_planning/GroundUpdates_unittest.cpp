@@ -19,22 +19,37 @@ void expectSame(const Ground& a, const Ground& b, int reach = 60) {
     }
 }
 
+/** The ground of a map, which is told where that changed. */
+struct FollowingGround {
+  explicit FollowingGround(SemanticOcTree& followed, const VehicleOptions& v = smallVehicle(),
+                           const GroundOptions& o = withoutGapFills())
+      : map(followed), vehicle(v), options(o) {
+    follower.skipTiles();
+  }
+  std::vector<Column> update() { return ground.update(follower.tiles()); }
+  void expectReadAnew(int reach = 60) const {
+    expectSame(ground, groundOf(map, vehicle, options), reach);
+  }
+
+  SemanticOcTree& map;
+  VehicleOptions vehicle;
+  GroundOptions options;
+  semantic_octree::MapFollower follower = map.follow();
+  Ground ground = groundOf(map, vehicle, options);
+};
+
 }  // namespace
 
 TEST(Ground, afterUpdatesItIsTheGroundReadAnew) {
   PaintedWorld world;
   addRubble(world, 2, 600);
   world.floor(-6, 6, -6, 6, PaintedWorld::Road);
-  SemanticOcTree& map = world.map();
-  const GroundOptions filling;
-  semantic_octree::MapFollower follower = map.follow();
-  follower.skipTiles();
-  Ground ground = groundOf(map, VehicleOptions(), filling);
+  FollowingGround ground(world.map(), {}, {});
   for (unsigned round = 0; round < 8; ++round) {
     addRubble(world, 100 + round, 25);
     world.map({0.05 + 0.3 * round, 0.05, 20});
-    ground.update(follower.tiles());
-    expectSame(ground, groundOf(map, VehicleOptions(), filling));
+    ground.update();
+    ground.expectReadAnew();
   }
 }
 
@@ -57,16 +72,13 @@ TEST(Ground, ofALargeMapFollowsChangesHereAndThere) {
       world.floor(x, x + 2, y, y + 2, PaintedWorld::Road);
       world.floor(x + 3, x + 4, y, y + 1, PaintedWorld::Mud);  // a hole between
     }
-  SemanticOcTree& map = world.map();
-  semantic_octree::MapFollower follower = map.follow();
-  follower.skipTiles();
-  Ground ground = groundOf(map, VehicleOptions(), {});
+  FollowingGround ground(world.map(), {}, {});
   for (int round = 0; round < 6; ++round) {
     const double x = -100 + 40 * round, y = round % 2 == 0 ? x : -x;
     world.floor(x - 4, x + 1, y - 4, y + 4, PaintedWorld::Mud);
     world.box(x, x + 0.3, y, y + 0.3, 0, 0.5, PaintedWorld::Wall).map({x + 0.05, y + 0.05, 3});
-    EXPECT_FALSE(ground.update(follower.tiles()).empty());
-    expectSame(ground, groundOf(map, VehicleOptions(), {}), 600);
+    EXPECT_FALSE(ground.update().empty());
+    ground.expectReadAnew(600);
   }
 }
 
@@ -118,30 +130,24 @@ TEST(Ground, withinSomeTilesDoesNotFollowChanges) {
 
 TEST(Ground, aHoleThatNoBeamEnteredIsFilledAfterAnUpdateAsInTheGroundReadAnew) {
   PaintedWorld world;
-  const GroundOptions filling;
-  SemanticOcTree& map = world.map();
-  semantic_octree::MapFollower follower = map.follow();
-  follower.skipTiles();
-  Ground ground = groundOf(map, VehicleOptions(), filling);
+  FollowingGround following(world.map(), {}, {});
   world.floor(-3.2, 0, 0, 3.2, PaintedWorld::Road).map({-1.65, 1.65, 20});
-  ground.update(follower.tiles());
+  following.update();
   world.floor(3.2, 6.4, 0, 3.2, PaintedWorld::Road).map({4.85, 1.65, 20});
-  ground.update(follower.tiles());
-  expectSame(ground, groundOf(map, VehicleOptions(), filling));
+  following.update();
+  following.expectReadAnew();
+  const Ground& ground = following.ground;
   EXPECT_TRUE(ground.connected(*ground.find(-1, 1.6), *ground.find(5, 1.6)));
 }
 
 TEST(Ground, anUpdateTellsTheTilesThatChanged) {
   PaintedWorld world;
   world.floor(-20, 20, -20, 20, PaintedWorld::Road);
-  SemanticOcTree& map = world.map();
-  semantic_octree::MapFollower follower = map.follow();
-  follower.skipTiles();
-  Ground ground = groundOf(map);
-  EXPECT_TRUE(ground.update({}).empty());
+  FollowingGround following(world.map());
+  EXPECT_TRUE(following.ground.update({}).empty());
   world.box(8.1, 8.3, 8.1, 8.3, 0, 1, PaintedWorld::Wall).map({8.05, 8.05, 10});
-  const std::vector<Column> changed = ground.update(follower.tiles());
-  const Column tile = tileOf(ground.columnAt(8.1, 8.1));
+  const std::vector<Column> changed = following.update();
+  const Column tile = tileOf(following.ground.columnAt(8.1, 8.1));
   EXPECT_NE(std::find(changed.begin(), changed.end(), tile), changed.end());
   EXPECT_LE(changed.size(), 4u);
 }
@@ -151,12 +157,10 @@ TEST(Ground, followsAMapThatIsClearedAndOneThatBecomesAnother) {
   addRubble(world, 2, 600);
   addRubble(other.floor(-6, 6, 2, 9, PaintedWorld::Road), 5, 300);
   SemanticOcTree& map = world.map();
-  semantic_octree::MapFollower follower = map.follow();
-  follower.skipTiles();
-  Ground ground = groundOf(map);
-  const auto expectFollowed = [&] {
-    EXPECT_FALSE(ground.update(follower.tiles()).empty());
-    expectSame(ground, groundOf(map));
+  FollowingGround ground(map);
+  const auto expectFollowed = [&ground] {
+    EXPECT_FALSE(ground.update().empty());
+    ground.expectReadAnew();
   };
   map.clear();
   expectFollowed();

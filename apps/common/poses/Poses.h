@@ -19,18 +19,19 @@ std::vector<double> parseNumbers(const std::string& text, std::size_t least, std
 /** "X,Y,DEG", meters and degrees. \throw std::invalid_argument naming the text */
 mrpt::math::TPose2D parsePose(const std::string& text);
 
-/** An option that hands its text to a function, whose errors are the command line's. */
+/** An option that hands each of its texts to a function, whose errors are the command line's. */
 template <class Take>
 CLI::Option* addParsed(CLI::App& app, const std::string& name, const std::string& type, Take take,
                        const std::string& description) {
-  const auto taken = [take, name](const std::string& text) {
+  const auto taken = [take, name](const CLI::results_t& texts) {
     try {
-      take(text);
+      for (const std::string& text : texts) take(text);
     } catch (const std::invalid_argument& e) {
       throw CLI::ValidationError(name, e.what());
     }
+    return true;
   };
-  return app.add_option_function<std::string>(name, taken, description)->type_name(type);
+  return app.add_option(name, taken, description)->type_name(type);
 }
 
 /** A pose of a command line: "X,Y,DEG". */

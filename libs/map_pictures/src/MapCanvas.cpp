@@ -186,8 +186,10 @@ void MapCanvas::drawLine(const std::vector<Eigen::Vector2d>& points, const Strok
   map_pictures::drawLine(m_picture, line, stroke);
 }
 
-void MapCanvas::drawPose(const mrpt::math::TPose2D& pose, const Arrow& arrow) {
+void MapCanvas::drawPose(const mrpt::math::TPose2D& pose, const Arrow& arrow,
+                         const std::string& name) {
   drawArrow(m_picture, at(pose.x, pose.y), pose.phi, arrow);
+  if (!name.empty()) explain({name, arrow});
 }
 
 void MapCanvas::fillOutline(const std::vector<Eigen::Vector2d>& corners, const Color& color) {

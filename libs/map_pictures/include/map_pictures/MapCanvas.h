@@ -139,7 +139,8 @@ class MapCanvas {
    * is what was there */
   void fillSquare(const Eigen::Vector2d& center, double edge, const Color& color, double share = 1);
   void drawLine(const std::vector<Eigen::Vector2d>& points, const Stroke& stroke);
-  void drawPose(const mrpt::math::TPose2D& pose, const Arrow& arrow);
+  /** \param name in the legend; empty: none */
+  void drawPose(const mrpt::math::TPose2D& pose, const Arrow& arrow, const std::string& name = {});
   /** A closed outline, such as a vehicle's footprint, filled. */
   void fillOutline(const std::vector<Eigen::Vector2d>& corners, const Color& color);
   /** What `draw` draws on this canvas covers only that share (0 to 1) of what was there. */
