@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "LabelEdges.h"
 #include "LabelProcess.h"
 
 namespace semantic_octree {
@@ -173,15 +174,21 @@ std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) con
     processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit);
     if (err) processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit, kLabelsOfMatrix);
     const double asRight = 1 - processes[0].leastCorrelation();
+    const auto classesOf = [&processes, asRight](const std::string& ofVoxel) {
+      std::vector<double> q = processes[0].classesOf(ofVoxel);
+      if (processes.size() == 1) return q;
+      const std::vector<double> right = processes[1].classesOf(ofVoxel);
+      for (std::size_t k = 0; k < q.size(); ++k) q[k] += asRight * (right[k] - q[k]);
+      return q;
+    };
+    if (err) {
+      const double always = asRight * alwaysWrong(labels.m_voxels, classesOf);
+      for (LabelProcess& process : processes) process.setAlwaysWrong(always);
+    }
     CalibrationFit fit;
     for (const auto& [voxel, belief] : beliefs) {
       const std::string& ofVoxel = labels.m_voxels.at(voxel);
-      std::vector<double> q = processes[0].classesOf(ofVoxel);
-      if (err) {
-        const std::vector<double> right = processes[1].classesOf(ofVoxel);
-        for (std::size_t k = 0; k < q.size(); ++k) q[k] += asRight * (right[k] - q[k]);
-      }
-      fit.add(belief, q, static_cast<double>(ofVoxel.size()));
+      fit.add(belief, classesOf(ofVoxel), static_cast<double>(ofVoxel.size()));
     }
     const std::vector<double> none(hasFactors ? static_cast<std::size_t>(numClasses) : 0, 1.0);
     Calibration found = fit.fit({0.7, 0.1, none});

@@ -23,6 +23,15 @@ void normalize(std::vector<double>& values) {
   for (double& value : values) value /= all;
 }
 
+/** Rows, weighed and added. */
+std::vector<double> mixed(const std::vector<std::vector<double>>& rows,
+                          const std::vector<double>& weights) {
+  std::vector<double> sum(weights.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weights[i] * rows[i][k];
+  return sum;
+}
+
 double repeatedIn(const LabeledVoxels& voxels) {
   double triples = kTriplesBefore, more = 0;
   for (const auto& [labels, number] : voxels)
@@ -72,7 +81,7 @@ double LabelProcess::step(const LabeledVoxels& voxels, const Table& before) {
   std::vector<Origin> origins;
   double slope = 0;
   for (const auto& [labels, number] : voxels) {
-    const std::vector<double> p = classesOf(labels, &origins);
+    const std::vector<double> p = looksOf(labels, &origins);
     for (std::size_t k = 0; k < p.size(); ++k) shares[k] += number * p[k];
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const double expected = shareDrawn(i);
@@ -91,12 +100,33 @@ double LabelProcess::shareDrawn(std::size_t earlier) const {
   return (1 - m_correlation) / (1 - m_correlation + m_correlation * static_cast<double>(earlier));
 }
 
-std::vector<double> LabelProcess::classesOf(const std::string& labels) const {
-  return classesOf(labels, nullptr);
+void LabelProcess::setAlwaysWrong(double always) {
+  const std::size_t K = m_shares.size();
+  Table looks = m_counts;
+  for (std::size_t k = 0; k < K; ++k) {
+    normalize(looks[k]);
+    for (double& look : looks[k]) look *= always;
+    looks[k][k] += 1 - always;
+  }
+  std::vector<double> seen = m_shares, is = m_shares;
+  normalize(seen);
+  m_given.assign(K, std::vector<double>(K));
+  for (int round = 0; round < kExpectations; ++round) {
+    for (std::size_t look = 0; look < K; ++look) {
+      for (std::size_t k = 0; k < K; ++k) m_given[look][k] = is[k] * looks[k][look];
+      normalize(m_given[look]);
+    }
+    is = mixed(m_given, seen);
+  }
 }
 
-std::vector<double> LabelProcess::classesOf(const std::string& labels,
-                                            std::vector<Origin>* origins) const {
+std::vector<double> LabelProcess::classesOf(const std::string& labels) const {
+  const std::vector<double> looks = looksOf(labels, nullptr);
+  return m_given.empty() ? looks : mixed(m_given, looks);
+}
+
+std::vector<double> LabelProcess::looksOf(const std::string& labels,
+                                          std::vector<Origin>* origins) const {
   std::vector<double> p = m_shares;
   if (origins) origins->clear();
   for (std::size_t i = 0; i < labels.size(); ++i) {

@@ -39,6 +39,9 @@ class LabelProcess {
   const std::vector<std::vector<double>>& counts() const { return m_counts; }
   /** p(class k + 1), given a voxel's labels. */
   std::vector<double> classesOf(const std::string& labels) const;
+  /** What voxels look like need not be what they are: in all scans alike, a class looks like
+   * another one so many times as often as a scan's label takes it for that. \param always [0, 1] */
+  void setAlwaysWrong(double always);
 
  private:
   using Table = std::vector<std::vector<double>>;
@@ -47,7 +50,7 @@ class LabelProcess {
     double drawn, urn;
   };
   /** \param origins of each label and class */
-  std::vector<double> classesOf(const std::string& labels, std::vector<Origin>* origins) const;
+  std::vector<double> looksOf(const std::string& labels, std::vector<Origin>* origins) const;
   /** Share of the draws among labels that do not repeat the one before. */
   double shareDrawn(std::size_t earlier) const;
   /** \return the sign of d ln p(all labels) / dr */
@@ -56,6 +59,7 @@ class LabelProcess {
   double m_repeated, m_correlation;
   Table m_counts, m_rows;
   std::vector<double> m_shares;
+  Table m_given;  ///< row: the class that a voxel looks like, column: what it is; empty: the same
 };
 
 }  // namespace semantic_octree

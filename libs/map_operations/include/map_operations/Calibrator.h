@@ -17,8 +17,9 @@ namespace semantic_octree {
  * class is taken for which, and what each voxel is (Dawid and Skene, "Maximum Likelihood Estimation
  * of Observer Error-Rates Using the EM Algorithm", 1979). Labels may repeat those of earlier scans:
  * then, if the first two of three labels differ, the third is more often the second than the first.
- * What all scans repeat cannot be seen, and is taken to be at least that one of two scans repeats
- * the one before.
+ * What all scans repeat cannot be seen in one voxel, and is taken to be at least that one of two
+ * scans repeats the one before. It is seen beside it: a place that is taken for another class has
+ * an edge, in one scan or in all.
  *
  * One voxel in 4 keeps its labels, fewer in large maps: about 32 thousand voxels, 64 labels each.
  * Only additions, multiplications and divisions are made, so that results are the same bits
@@ -41,7 +42,8 @@ class Calibrator {
    * from the third of a voxel on, for fewer cannot outvote each other. Power and share are in steps
    * of 1/256. Classes get factors where labels err: where the first two labels of more than one
    * voxel in 25 differ, and no border of the two is beside. Not if the map was told how frequent
-   * classes are (FilterParameters::classPrior). */
+   * classes are (FilterParameters::classPrior). Where labels err, classes also look like others in
+   * all scans, so many times as often as in one as edges of either kind tell. */
   Calibration fit(const SemanticOcTree& map) const { return fitLater(map)(); }
   /** fit() in two parts: the map is read at once. The rest, which takes most of the time, is done
    * by whoever calls what is returned, in any thread. */
