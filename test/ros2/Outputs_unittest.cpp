@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
+#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <cstring>
@@ -14,12 +15,18 @@ namespace {
 std::map<std::string, std::size_t> cubesOf(
     const std::vector<std::shared_ptr<const ros2::MarkerArray>>& arrays) {
   std::map<std::pair<std::string, int>, std::size_t> markers;
-  for (const auto& array : arrays)
+  for (const auto& array : arrays) {
+    std::set<std::pair<std::string, int>> inArray;
     for (std::uint32_t i = 0; i < array->markers._length; ++i) {
       const ros2::Marker& marker = array->markers._buffer[i];
       EXPECT_EQ(marker.action == 0, marker.points._length > 0);
+      EXPECT_EQ(marker.action == 2, marker.points._length == 0);
+      EXPECT_EQ(marker.type, 6) << "cubes";
+      EXPECT_EQ(marker.color.a, 1);
+      EXPECT_TRUE(inArray.insert({marker.ns, marker.id}).second) << "RViz refuses it";
       markers[{marker.ns, marker.id}] = marker.points._length;
     }
+  }
   std::map<std::string, std::size_t> cubes;
   for (const auto& [which, count] : markers) cubes[which.first] += count;
   return cubes;
@@ -161,6 +168,56 @@ TEST_F(RoadInGrass, tellsWhatChangedInItsGrid) {
   const std::size_t whole = kept.grids();
   ASSERT_TRUE(live->waitFor([&] { return see(number++, far), kept.at(16.1, 0.1) == 10; }));
   EXPECT_EQ(kept.grids(), whole + 1);
+  EXPECT_EQ(live->end(), kStopped) << live->said();
+}
+
+/** What config/ros/semantic-map.rviz asks for, as RViz asks: with the displays' own QoS. */
+class RvizFile {
+ public:
+  ros2::Qos qosOf(const std::string& topic) const {
+    for (const YAML::Node& display : m_manager["Displays"])
+      if (const YAML::Node t = display["Topic"]; t && t["Value"].as<std::string>() == topic)
+        return {t["Reliability Policy"].as<std::string>() == "Reliable",
+                t["Durability Policy"].as<std::string>() == "Transient Local",
+                t["Depth"].as<int>()};
+    throw std::runtime_error("no display of " + topic);
+  }
+  std::set<std::string> buttons() const {
+    std::set<std::string> topics;
+    for (const YAML::Node& tool : m_manager["Tools"])
+      if (tool["Topic"]) topics.insert(tool["Topic"]["Value"].as<std::string>());
+    return topics;
+  }
+
+ private:
+  YAML::Node m_manager =
+      YAML::LoadFile(MSO_SOURCE_DIR "/config/ros/semantic-map.rviz")["Visualization Manager"];
+};
+
+TEST_F(RoadInGrass, isSeenByTheDisplaysOfTheRvizFile) {
+  start({"-p", "order:=" + order(), "-p", "slam:=true", "-p", "odom_frame:=map", "-p",
+         "map_frame:=world"});
+  const std::string world = "world";
+  const RvizFile rviz;
+  EXPECT_EQ(rviz.buttons(), (std::set<std::string>{"/goal_pose", "/initialpose"}));
+  const std::string m = "/semantic_map/markers", o = "/semantic_map/occupied";
+  Heard<ros2::MarkerArray> markers(*live, m, rviz.qosOf(m));
+  Heard<ros2::PointCloud2> voxels(*live, o, rviz.qosOf(o));
+  Heard<ros2::OccupancyGrid> grid(*live, "/map", rviz.qosOf("/map"));
+  Heard<ros2::Path> path(*live, "/plan", rviz.qosOf("/plan"));
+  ros2::Publication<ros2::PoseStamped> goals(live->node(), "/goal_pose", {});
+  see(1);
+  ros2::PoseStamped goal{};
+  goal.header = ros2::headerOf(0, world);
+  goal.pose.position.x = 5;
+  goal.pose.orientation.w = 1;
+  live->send(goals, goal);
+  ASSERT_TRUE(
+      live->waitFor([&] { return markers.last() && voxels.last() && grid.last() && path.last(); }));
+  for (const std::string& frame :
+       {ros2::textOf(voxels.last()->header.frame_id), ros2::textOf(grid.last()->header.frame_id),
+        ros2::textOf(path.last()->header.frame_id)})
+    EXPECT_EQ(frame, world);
   EXPECT_EQ(live->end(), kStopped) << live->said();
 }
 
