@@ -83,12 +83,8 @@ class ColumnGrid {
   }
 
   std::shared_ptr<T>& placeOf(Column tile) {
-    const auto isWithin = [](int at, int first, int size) {
-      return at >= first && at < first + size;
-    };
-    if (!isWithin(tile.x, m_first.x, m_width) || !isWithin(tile.y, m_first.y, m_height))
-      growTo(tile);
-    return m_tiles[static_cast<std::size_t>(tile.y - m_first.y) * m_width + tile.x - m_first.x];
+    if (numberOf(tile) == kNoTile) growTo(tile);
+    return m_tiles[static_cast<std::size_t>(numberOf(tile))];
   }
 
   void growTo(Column tile) {

@@ -8,10 +8,8 @@
 
 namespace semantic_planning {
 
-namespace {
-
 /** Small numbers on a square of columns, row by row: many of them are looked at at a time. */
-class Square {
+class OpenGround::Square {
  public:
   explicit Square(int edge) : m_edge(edge), m_numbers(static_cast<std::size_t>(edge * edge)) {}
   std::uint8_t* row(int y) { return m_numbers.data() + y * m_edge; }
@@ -50,6 +48,8 @@ class Square {
   std::vector<std::uint8_t> m_numbers;
 };
 
+namespace {
+
 constexpr std::uint8_t kMost = std::numeric_limits<std::uint8_t>::max();
 constexpr auto lower = [](std::uint8_t a, std::uint8_t b) { return a < b ? a : b; };
 constexpr auto higher = [](std::uint8_t a, std::uint8_t b) { return a > b ? a : b; };
@@ -71,26 +71,28 @@ OpenGround::Room OpenGround::around(Column c) {
   return (*tile)[static_cast<std::size_t>(indexInTile(c))];
 }
 
-OpenGround::Rooms OpenGround::find(Column tile) const {
-  const int margin = kFarthest + m_discs.columns, edge = kTileEdge + 2 * margin;
+/** Of columns without one surface, or one far above or below, all numbers stay 0. */
+void OpenGround::read(Column tile, int margin, Square& z, Square& classes, Square& fits) const {
   const SurfaceWindow window(m_ground.layers().surfaces(), tile, margin);
   const Column first = firstColumnOf(tile);
   const std::vector<Surface>& own = window.around(first).surfaces;
-  const int base = own.empty() ? 0 : own.front().z - 128;
-  Square z(edge), leastClass(edge), free(edge);
-  for (int y = 0; y < edge; ++y) {
-    std::uint8_t *const zs = z.row(y), *const classes = leastClass.row(y),
-                        *const frees = free.row(y);
-    for (int x = 0; x < edge; ++x) {
+  const int base = own.empty() ? 0 : own.front().z - kMost / 2;
+  for (int y = 0; y < kTileEdge + 2 * margin; ++y)
+    for (int x = 0; x < kTileEdge + 2 * margin; ++x) {
       const SurfaceRange range = surfacesAt(window, {first.x - margin + x, first.y - margin + y});
       if (range.last - range.first != 1) continue;
       const Surface s = *range.first;
-      if (s.z <= base || s.z > base + 254) continue;  // far above or below: as if there were none
-      zs[x] = static_cast<std::uint8_t>(s.z - base);
-      classes[x] = s.classId;
-      frees[x] = s.drivable && s.clearance2 >= m_needed2;
+      if (s.z <= base || s.z >= base + kMost) continue;
+      z.row(y)[x] = static_cast<std::uint8_t>(s.z - base);
+      classes.row(y)[x] = s.classId;
+      fits.row(y)[x] = s.drivable && s.clearance2 >= m_needed2;
     }
-  }
+}
+
+OpenGround::Rooms OpenGround::find(Column tile) const {
+  const int margin = kFarthest + m_discs.columns, edge = kTileEdge + 2 * margin;
+  Square z(edge), leastClass(edge), free(edge);
+  read(tile, margin, z, leastClass, free);
   Square lowest = z, highest = z, largestClass = leastClass, uniform = z;
   constexpr auto orMost = [](auto number, auto height) { return height ? number : kMost; };
   highest.combine(orMost, z), largestClass.combine(orMost, z);
@@ -101,18 +103,21 @@ OpenGround::Rooms OpenGround::find(Column tile) const {
   const auto keepLevel = [&](Square& where, const Reach& within) {
     lowest.spread(within.columns - spread, lower), highest.spread(within.columns - spread, higher);
     spread = within.columns;
-    where.combine(
-        [most = static_cast<std::uint8_t>(within.tolerance)](auto is, auto low, auto here,
-                                                             auto high) {
-          const std::uint8_t up = high - here, down = here - low;
-          return static_cast<std::uint8_t>(is & (higher(up, down) <= most));
-        },
-        lowest, z, highest);
+    const auto most = static_cast<std::uint8_t>(std::min(within.tolerance, kMost - 1));
+    const auto isLevel = [most](auto is, auto low, auto here, auto high) {
+      const std::uint8_t up = high - here, down = here - low;
+      return static_cast<std::uint8_t>(is & (higher(up, down) <= most));
+    };
+    where.combine(isLevel, lowest, z, highest);
   };
   const Reach nextStep{1, m_ground.step()};
   keepLevel(free, nextStep), keepLevel(uniform, nextStep);
   keepLevel(uniform, m_wheels), keepLevel(free, m_discs);
-  Square ofDiscs(edge), ofClass(edge);
+  return roomsIn(free, uniform, margin);
+}
+
+OpenGround::Rooms OpenGround::roomsIn(Square free, Square uniform, int margin) {
+  Square ofDiscs(kTileEdge + 2 * margin), ofClass = ofDiscs;
   for (int distance = 1; distance <= kFarthest; ++distance) {
     ofDiscs.combine(std::plus<>(), free), ofClass.combine(std::plus<>(), uniform);
     free.spread(1, lower), uniform.spread(1, lower);

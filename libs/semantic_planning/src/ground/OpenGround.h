@@ -34,7 +34,10 @@ class OpenGround {
   static constexpr int kFarthest = 8;
   using Rooms = std::array<Room, kTileColumns>;
 
+  class Square;
+  void read(Column tile, int margin, Square& z, Square& classes, Square& fits) const;
   Rooms find(Column tile) const;
+  static Rooms roomsIn(Square free, Square uniform, int margin);
 
   const Ground& m_ground;
   const Reach m_discs, m_wheels;
