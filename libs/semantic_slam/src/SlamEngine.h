@@ -169,6 +169,13 @@ class SlamEngine {
    * are off by what was driven on it (Bosse et al., "Simultaneous Localization and Map Building in
    * Large-Scale Cyclic Environments Using the Atlas Framework", 2004). */
   std::vector<double> waysFromNewest() const;
+  /** To each side, in a stretch. */
+  std::size_t keyframesBeside() const {
+    return static_cast<std::size_t>(m_scale.submapKeyframes / 2);
+  }
+  /** Share of the highest score of every other keyframe of the newest stretch in those between: as
+   * well it fits where it was before. */
+  double ownScore() const;
   /** Where the robot may be off after a way (m). */
   PlaneSearch::Window windowAfter(double way) const;
   /** Information of what was found, by its points and by what is known of such finds at most. */

@@ -24,8 +24,9 @@ constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngl
 constexpr double kLostMore = 9;
 constexpr std::size_t kMostPlaces = 3;
 /** Share of the highest score where poses are right already, by the first window; and where they
- * would move: what goes on into a corridor that nobody saw fits wrong places up to .7. */
-constexpr double kLeastScore = 0.5, kMovingScore = 0.75;
+ * would move, of what the stretch has in itself: people and noise fit nowhere. What goes on into a
+ * corridor that nobody saw fits wrong places up to .75 of that. */
+constexpr double kLeastScore = 0.5, kMovingScore = 0.8;
 /** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
  */
 constexpr double kAgree = 0.2, kAgreeWay = 0.03, kAgreeAngle = 2 * kDegree,
@@ -89,8 +90,7 @@ std::vector<std::size_t> SlamEngine::placesWithin(const std::vector<double>& way
   for (std::size_t k = 0; k < m_keyframes.size() && way - m_keyframes[k].way >= m_scale.loopLength;
        ++k) {
     if (distance(k) > 1.4 * windowAfter(ways[k]).radius) continue;
-    const auto apart = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
-    if (places.empty() || k - previous > apart)
+    if (places.empty() || k - previous > keyframesBeside())
       places.push_back(k);
     else if (distance(k) < distance(places.back()))
       places.back() = k;
@@ -110,8 +110,7 @@ bool SlamEngine::closeLoops() {
   const auto ways = waysFromNewest();
   const auto places = placesWithin(ways);
   if (places.empty()) return false;
-  const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
-  const Seen stretch = pointsOf(newest - std::min(newest, beside), newest, newest);
+  const Seen stretch = pointsOf(newest - std::min(newest, keyframesBeside()), newest, newest);
   bool moved = false;
   for (const std::size_t place : places)
     if (const auto edge = edgeTo(place, stretch, ways[place])) {
@@ -126,6 +125,17 @@ bool SlamEngine::closeLoops() {
       m_report.open = 0;
     }
   return moved;
+}
+
+double SlamEngine::ownScore() const {
+  const std::size_t newest = m_keyframes.size() - 1;
+  PlanePoints some, others;
+  for (std::size_t k = newest - std::min(newest, keyframesBeside()); k <= newest; ++k)
+    for (const Eigen::Vector2d& p : upright(moved(seenAt(k).cloud, m_poses[k])))
+      (k % 2 == newest % 2 ? some : others).push_back(p);
+  const PlaneSearch::Window here{0, 0};
+  const auto own = PlaneSearch(others, m_scale.gridCell).find(some, {0, 0, 0}, here, 0);
+  return own ? own->score : 1;
 }
 
 PlaneSearch::Window SlamEngine::windowAfter(double way) const {
@@ -168,15 +178,15 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
   }
   if (!found) return std::nullopt;
   const double off = (found->pose - guess).head<2>().norm();
-  if (found->score < kMovingScore && off > kWindow * m_scale.gridCell) return std::nullopt;
+  if (off > kWindow * m_scale.gridCell && found->score < kMovingScore * ownScore())
+    return std::nullopt;
   if (!found->isAlone) {
     m_report.open += way > m_scale.loopLength;  // no loop leads there yet
     return std::nullopt;
   }
   Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
-  return edgeNear(m_poses[place] * T_found, first, last,
-                  static_cast<std::size_t>(m_scale.submapKeyframes / 2), stretch, newest,
+  return edgeNear(m_poses[place] * T_found, first, last, keyframesBeside(), stretch, newest,
                   m_scale.leastMatched);
 }
 

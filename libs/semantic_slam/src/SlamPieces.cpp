@@ -31,8 +31,7 @@ const Matrix6 kUnknown = informationOf(100, 10);
 }  // namespace
 
 bool SlamEngine::mendPieces(bool isLast) {
-  const auto beside = static_cast<std::size_t>(m_scale.submapKeyframes / 2);
-  if (m_doubted && *m_doubted + (isLast ? 1 : beside) <= m_keyframes.size()) {
+  if (m_doubted && *m_doubted + (isLast ? 1 : keyframesBeside()) <= m_keyframes.size()) {
     const std::size_t first = *m_doubted;
     m_doubted.reset();
     if (first > 0 && !holdsAcross(first)) tearAt(first);
@@ -132,6 +131,7 @@ bool SlamEngine::joinPiece() {
 
 bool SlamEngine::joinParts() {
   bool moved = false;
+  m_report.twofold = 0;  // looks from now on take all that they need
   auto all = parts();
   for (std::size_t i = 1; i < all.size(); ++i)
     if (join(all[i], findPart(all[0], all[i]))) {
