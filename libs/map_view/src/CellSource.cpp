@@ -212,7 +212,7 @@ namespace {
 
 constexpr Color kFree{120, 180, 235}, kUnknown{60, 55, 50};
 
-std::uint8_t byteOf(double x) { return static_cast<std::uint8_t>(x + 0.5); }
+std::uint8_t toByte(double x) { return static_cast<std::uint8_t>(x + 0.5); }
 
 /** From dark violet (0) over blue and green to yellow (1), brighter and brighter. */
 Color ramp(double value) {
@@ -221,7 +221,7 @@ Color ramp(double value) {
   const double at = std::clamp(value, 0.0, 1.0) * (kStops.size() - 1);
   const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(at), kStops.size() - 2);
   const auto mixed = [&](std::size_t c) {
-    return byteOf(kStops[i][c] + (at - double(i)) * (kStops[i + 1][c] - kStops[i][c]));
+    return toByte(kStops[i][c] + (at - double(i)) * (kStops[i + 1][c] - kStops[i][c]));
   };
   return {mixed(0), mixed(1), mixed(2)};
 }
