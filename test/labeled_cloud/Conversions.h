@@ -1,14 +1,11 @@
 #pragma once
 #include <labeled_cloud/ScanConverter.h>
 
+#include "Classes.h"
 #include "TemporaryFolder.h"
 
 /** Classes 1, 2, 3. */
-inline semantic_types::ClassTable abc() {
-  semantic_types::ClassTable table;
-  for (const char* name : {"a", "b", "c"}) table.add(name, {});
-  return table;
-}
+inline semantic_types::ClassTable abc() { return tableOf({"a", "b", "c"}); }
 
 inline labeled_cloud::LabeledScan convert(const mrpt::obs::CObservation& obs,
                                           const labeled_cloud::ScanConverterOptions& options = {}) {

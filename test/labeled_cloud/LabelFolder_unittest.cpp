@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "Classes.h"
 #include "DepthCamera.h"
 #include "TemporaryFolder.h"
 
@@ -19,10 +20,7 @@ using semantic_types::ClassTable;
 namespace {
 
 ClassTable roadGrassSky() {
-  ClassTable table;
-  table.add("road", {255, 0, 0});
-  table.add("grass", {0, 255, 1});
-  table.add("sky", {0, 0, 255});
+  ClassTable table = tableOf({{"road", {255, 0, 0}}, {"grass", {0, 255, 1}}, {"sky", {0, 0, 255}}});
   table.fold(0, 0);
   for (const int id : {1, 2, 3}) table.fold(id, static_cast<semantic_types::ClassId>(id));
   table.fold(40000, 3);

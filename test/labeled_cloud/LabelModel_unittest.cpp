@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <labeled_cloud/LabelModel.h>
 
+#include "Classes.h"
 #include "TemporaryFolder.h"
 
 using namespace labeled_cloud;
@@ -24,11 +25,7 @@ LabeledCloud softCloud(const std::vector<float>& probabilities, std::size_t poin
   return cloud;
 }
 
-ClassTable roadCarTree() {
-  ClassTable table;
-  for (const char* name : {"road", "car", "tree"}) table.add(name, {});
-  return table;
-}
+ClassTable roadCarTree() { return tableOf({"road", "car", "tree"}); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "Classes.h"
 #include "NearestColorNetwork.h"
 #include "TemporaryFolder.h"
 
@@ -16,12 +17,7 @@ using semantic_types::ClassTable;
 
 namespace {
 
-ClassTable twoColors() {
-  ClassTable table;
-  table.add("red", {255, 0, 0});
-  table.add("blue", {0, 0, 255});
-  return table;
-}
+ClassTable twoColors() { return tableOf({{"red", {255, 0, 0}}, {"blue", {0, 0, 255}}}); }
 
 CObservationImage picture(const cv::Mat3b& bgr) {
   CObservationImage observation;

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "Classes.h"
 #include "Conversions.h"
 #include "RawlogFile.h"
 
@@ -76,9 +77,7 @@ TEST(UnlabeledClouds, countForOccupancyOnly) {
 }
 
 TEST(ColoredClouds, haveTheClassesOfTheTablesColorsUnlessTheyAreAPhotographs) {
-  semantic_types::ClassTable table;
-  table.add("road", {128, 64, 129});
-  table.add("car", {245, 150, 100});
+  semantic_types::ClassTable table = tableOf({{"road", {128, 64, 129}}, {"car", {245, 150, 100}}});
   auto map = mrpt::maps::CColouredPointsMap::Create();
   const auto add = [&map](float x, float r, float g, float b) {
     const std::size_t i = map->size();
@@ -113,9 +112,7 @@ TEST(PointClouds, haveTheClassesOfTheirFieldLabel) {
   add(NAN, 10, 0);
   add(2, 0, 0.5f);
   add(3, 10, 0.75f);
-  semantic_types::ClassTable table;
-  table.add("road", {128, 64, 129});
-  table.add("car", {245, 150, 100});
+  semantic_types::ClassTable table = tableOf({{"road", {128, 64, 129}}, {"car", {245, 150, 100}}});
   table.fold(40, 1);
   table.fold(10, 2);
   mrpt::obs::CObservationPointCloud obs;
@@ -136,8 +133,7 @@ TEST(PointClouds, haveTheClassesOfTheColorsAmongTheirFields) {
   map->insertPointField_uint8("color_r", 245);
   map->insertPointField_uint8("color_g", 150);
   map->insertPointField_uint8("color_b", 100);
-  semantic_types::ClassTable table;
-  table.add("car", {245, 150, 100});
+  const semantic_types::ClassTable table = tableOf({{"car", {245, 150, 100}}});
   mrpt::obs::CObservationPointCloud obs;
   obs.pointcloud = map;
   EXPECT_EQ(ScanConverter(table).convert(obs)->cloud.classes, (std::vector<ClassId>{1}));

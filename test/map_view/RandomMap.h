@@ -4,6 +4,8 @@
 #include <random>
 #include <tuple>
 
+#include "Classes.h"
+
 using CubeId = std::tuple<int, int, int, int>;  // keys of the lowest voxel, depth
 
 inline CubeId cubeOf(const Eigen::Array3i& lowest, int depth) {
@@ -12,11 +14,7 @@ inline CubeId cubeOf(const Eigen::Array3i& lowest, int depth) {
 
 /** road, tree, wall */
 inline semantic_types::ClassTable threeClasses() {
-  semantic_types::ClassTable table;
-  table.add("road", {200, 30, 30});
-  table.add("tree", {30, 180, 60});
-  table.add("wall", {40, 60, 210});
-  return table;
+  return tableOf({{"road", {200, 30, 30}}, {"tree", {30, 180, 60}}, {"wall", {40, 60, 210}}});
 }
 
 /** Voxels of 0.2 m: a ground of road and trees with a wall upon it, whose points are seen from

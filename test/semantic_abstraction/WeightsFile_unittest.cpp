@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_abstraction/AbstractionOptions.h>
 
+#include "Classes.h"
 #include "TemporaryFolder.h"
 
 using semantic_octree::AbstractionOptions;
@@ -9,11 +10,7 @@ using semantic_types::ClassTable;
 
 namespace {
 
-ClassTable roadTreeWall() {
-  ClassTable table;
-  for (const char* name : {"road", "tree", "wall"}) table.add(name, {});
-  return table;
-}
+ClassTable roadTreeWall() { return tableOf({"road", "tree", "wall"}); }
 
 /** What a file with one solution says. */
 AbstractionOptions ofFile(const std::string& text) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_types/ClassTable.h>
 
+#include "Classes.h"
 #include "TemporaryFolder.h"
 
 using namespace semantic_types;
@@ -8,11 +9,7 @@ using namespace semantic_types;
 namespace {
 
 ClassTable table() {
-  ClassTable classes;
-  classes.add("road", {90, 90, 90});
-  classes.add("snow", {255, 255, 255});
-  classes.add("coal", {0, 0, 0});
-  return classes;
+  return tableOf({{"road", {90, 90, 90}}, {"snow", {255, 255, 255}}, {"coal", {0, 0, 0}}});
 }
 
 }  // namespace

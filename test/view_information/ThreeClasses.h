@@ -2,15 +2,13 @@
 #include <semantic_types/ClassTable.h>
 #include <tree_abstraction/AbstractionWeights.h>
 
+#include "Classes.h"
+
 /** The classes of these tests, and the edge of their voxels. */
 enum : semantic_types::ClassId { kRoad = 1, kGrass, kWall };
 constexpr double kVoxel = 0.2;  // m
 
-inline semantic_types::ClassTable threeClasses() {
-  semantic_types::ClassTable table;
-  for (const char* name : {"road", "grass", "wall"}) table.add(name, {});
-  return table;
-}
+inline semantic_types::ClassTable threeClasses() { return tableOf({"road", "grass", "wall"}); }
 
 inline tree_abstraction::AbstractionWeights relevantOnly(semantic_types::ClassId id) {
   tree_abstraction::AbstractionWeights weights;
