@@ -35,18 +35,17 @@ fs::path placeOf(const fs::path& target) {
 /** What f() gives. \throw std::runtime_error naming the target, but for PlaceTaken */
 template <typename F>
 auto naming(const fs::path& target, const F& f) {
-  const auto refuse = [&target](const std::string& why) {
-    throw std::runtime_error(target.string() + ": cannot be written: " + why);
-  };
+  std::string why;
   try {
     return f();
   } catch (const PlaceTaken&) {
     throw;
   } catch (const fs::filesystem_error& e) {
-    refuse(e.code().message());
+    why = e.code().message();
   } catch (const std::exception& e) {
-    refuse(e.what());
+    why = e.what();
   }
+  throw std::runtime_error(target.string() + ": cannot be written: " + why);
 }
 
 /** As the file has that is replaced. */
