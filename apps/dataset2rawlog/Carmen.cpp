@@ -2,6 +2,7 @@
 #include <mrpt/math/TPose2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
+#include <strict_files/OptionList.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
@@ -45,7 +46,7 @@ class Words {
     constexpr double kMost = 1e5;
     const double count = number("the number of its " + what);
     if (!(count >= 0 && count <= kMost) || count != std::floor(count))
-      fail("has no such number of " + what + ": " + std::to_string(count));
+      fail("has no such number of " + what + ": " + strict_files::textOf(count));
     std::vector<double> numbers;
     while (static_cast<double>(numbers.size()) < count)
       numbers.push_back(number("number " + std::to_string(numbers.size() + 1) + " of " +
@@ -142,9 +143,9 @@ class Log {
     const double between = std::max<double>(1, static_cast<double>(ranges.size()) - 1);
     if (!(beams.step > 0)) beams.step = aperture / between;
     if (std::abs(beams.step * between - aperture) > 1.5 * beams.step)
-      words.fail(std::to_string(ranges.size()) + " ranges, " + std::to_string(beams.step) +
+      words.fail(std::to_string(ranges.size()) + " ranges, " + strict_files::textOf(beams.step) +
                  " radians from each other, do not fill its field of view of " +
-                 std::to_string(aperture));
+                 strict_files::textOf(aperture));
     TPose2D T_robot_laser{0, 0, 0};
     if (!hasPose) return writeScan(words, ranges, beams, T_robot_laser, words.time());
     const TPose2D laser = words.pose("the laser"), robot = words.pose("the robot");

@@ -143,7 +143,7 @@ TEST(RangeImages, unusableOnesSayWhy) {
   auto obs = camera.see([](int, int) { return 2; });
   obs->hasRangeImage = false;
   EXPECT_EQ(errorConverting(*obs),
-            "CObservation3DRangeScan 'cam' at 10.000000 s: it has neither a range image "
+            "CObservation3DRangeScan 'cam' at 10 s: it has neither a range image "
             "nor 3D points");
   obs->hasRangeImage = true;
   obs->cameraParams.ncols = 61;

@@ -114,9 +114,9 @@ TEST(ClassTableFile, errorsNameFileLineAndValue) {
   EXPECT_EQ(errorFor(one + "  - {id: 2, name: b, color: [1, 2, 3], alpha: 1}\n"),
             ":3: unknown key 'alpha'; known are color, half_life, id, name, raw");
   EXPECT_EQ(errorFor(one + "  - {id: 2, name: b, color: [1, 2, 3], half_life: 0}\n"),
-            ":3: class table: half-life of 'b' = 0.000000 s, expected 0.001 to 1000000000");
+            ":3: class table: half-life of 'b' = 0 s, expected 0.001 to 1000000000");
   EXPECT_EQ(errorFor(one + "free_half_life: 1e10\n"),
-            ":3: class table: half-life of free space = 10000000000.000000 s, expected 0.001 to "
+            ":3: class table: half-life of free space = 10000000000 s, expected 0.001 to "
             "1000000000");
 }
 

@@ -1,4 +1,5 @@
 #include <labeled_cloud/LabelModel.h>
+#include <strict_files/OptionList.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,7 @@ void check(const Counts& counts) {
                                   " rows, but one of " + std::to_string(row.size()) + " columns");
     const auto bad = std::find_if_not(row.begin(), row.end(), good);
     if (bad != row.end())
-      throw std::invalid_argument("confusion matrix: a count is " + std::to_string(*bad) +
+      throw std::invalid_argument("confusion matrix: a count is " + strict_files::textOf(*bad) +
                                   ", expected 0 or more");
     all += sum(row);
   }

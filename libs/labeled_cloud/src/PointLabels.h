@@ -3,6 +3,7 @@
 #include <labeled_cloud/ScanConverter.h>
 #include <mrpt/obs/CObservation.h>
 #include <semantic_types/LabeledCloud.h>
+#include <strict_files/OptionList.h>
 
 #include <string>
 #include <vector>
@@ -38,7 +39,7 @@ inline std::string kindOf(const mrpt::rtti::CObject& o) {
 /** What messages call an observation: class, sensor, time. */
 inline std::string nameOf(const mrpt::obs::CObservation& o) {
   return kindOf(o) + " '" + o.sensorLabel + "' at " +
-         std::to_string(mrpt::Clock::toDouble(o.timestamp)) + " s";
+         strict_files::textOf(mrpt::Clock::toDouble(o.timestamp)) + " s";
 }
 
 }  // namespace labeled_cloud

@@ -6,6 +6,7 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/poses/CPose3DQuat.h>
+#include <strict_files/OptionList.h>
 #include <strict_files/TextFile.h>
 #include <strict_files/Words.h>
 
@@ -61,7 +62,7 @@ void Trajectory::insert(Time time, const CPose3D& T_map_robot) {
   for (int i = 0; i < 6; ++i)
     if (!std::isfinite(T_map_robot[i]))
       throw std::invalid_argument("trajectory: the pose at " +
-                                  std::to_string(mrpt::Clock::toDouble(time)) +
+                                  strict_files::textOf(mrpt::Clock::toDouble(time)) +
                                   " s is not finite: " + T_map_robot.asString());
   m_poses[time] = T_map_robot;
 }
@@ -316,7 +317,7 @@ void ScanStream::checkOrder(const CObservation& observation) {
   auto& last = m_lastOfSensor[observation.sensorLabel];
   const std::chrono::duration<double> back = last - observation.timestamp;
   if (back.count() > 0)
-    throw std::invalid_argument("its time is " + std::to_string(back.count()) +
+    throw std::invalid_argument("its time is " + strict_files::textOf(back.count()) +
                                 " s before that of this sensor's observation before it");
   last = observation.timestamp;
 }

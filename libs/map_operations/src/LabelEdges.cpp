@@ -42,9 +42,10 @@ bool agree(const std::string& labels, Place& place) {
   return differs == labels.end() || std::none_of(differs + 1, labels.end(), other);
 }
 
-/** How often two classes lie beside each other. */
+/** How often two classes lie beside each other; and how often one scan takes both of two voxels for
+ * another class, more than two scans do. */
 struct Edges {
-  double always = 0, once = 0;
+  double always = 0, once = 0, alike = 0;
 };
 using EdgesOfPairs = std::map<std::pair<char, char>, Edges>;
 
@@ -52,12 +53,17 @@ using EdgesOfPairs = std::map<std::pair<char, char>, Edges>;
  * same scans, nearly always. */
 void count(const Place& a, const Place& b, EdgesOfPairs& edges) {
   const std::size_t n = a.labels->size();
-  if (b.labels->size() != n || (a.differs() && b.differs())) return;
+  if (b.labels->size() != n) return;
   const std::size_t i = std::min(a.exception, b.exception);
   const auto ofPair = [&edges](char x, char y) -> Edges& {
     return edges[{std::min(x, y), std::max(x, y)}];
   };
-  if (a.label != b.label)
+  if (a.differs() && b.differs()) {
+    const char wrong = (*a.labels)[a.exception];
+    if (a.label == b.label && wrong == (*b.labels)[b.exception])
+      ofPair(a.label, wrong).alike +=
+          a.exception == b.exception ? 1 : -1 / (static_cast<double>(n) - 1);
+  } else if (a.label != b.label)
     ofPair(a.label, b.label).always += (i < n ? 1 : static_cast<double>(n)) * a.right * b.right;
   else if (i < n)
     ++ofPair((*a.labels)[i], (*b.labels)[i]).once;
@@ -78,6 +84,17 @@ EdgesOfPairs edgesOf(const std::vector<Place>& places) {
   return edges;
 }
 
+/** How far an edge in all scans may be that of wrong places, [0, 1]. Of the voxels beside one at a
+ * straight edge half are like it; if those beside a wrong one are not, places err one by one. */
+double patchesIn(const EdgesOfPairs& edges) {
+  double once = 0, alike = 0;
+  for (const auto& [classes, seen] : edges) {
+    once += seen.once;
+    alike += seen.alike;
+  }
+  return alike > 0 ? std::min(1.0, 2 * alike / (once + alike)) : 0;
+}
+
 }  // namespace
 
 double alwaysWrong(const PlacedLabels& voxels,
@@ -91,7 +108,9 @@ double alwaysWrong(const PlacedLabels& voxels,
   }
   std::sort(places.begin(), places.end(),
             [](const Place& a, const Place& b) { return a.voxel < b.voxel; });
-  const EdgesOfPairs edges = edgesOf(places);
+  EdgesOfPairs edges = edgesOf(places);
+  const double patches = patchesIn(edges);
+  for (auto& [classes, seen] : edges) seen.always *= patches;
   double ofPair = 0;
   for (const auto& [classes, seen] : edges) ofPair += seen.once / static_cast<double>(edges.size());
   return shareWithoutGain(kHalvingsOfShare, [&edges, ofPair](double share) {

@@ -1,5 +1,6 @@
 #include <semantic_types/ClassTable.h>
 
+#include <strict_files/OptionList.h>
 #include <strict_files/StrictYaml.h>
 #include <strict_files/Words.h>
 
@@ -48,7 +49,7 @@ void ClassTable::setHalfLife(ClassId id, double seconds) {
   if (seconds != kForever && !(seconds >= 0.001 && seconds <= 1e9))
     throw std::invalid_argument("class table: half-life of " +
                                 (id == kNoClass ? "free space" : "'" + known.name + "'") + " = " +
-                                std::to_string(seconds) + " s, expected 0.001 to 1000000000");
+                                strict_files::textOf(seconds) + " s, expected 0.001 to 1000000000");
   (id == kNoClass ? m_freeHalfLife : m_entries[id - 1].halfLife) = seconds;
 }
 
