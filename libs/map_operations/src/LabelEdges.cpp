@@ -92,8 +92,9 @@ double alwaysWrong(const PlacedLabels& voxels,
   std::sort(places.begin(), places.end(),
             [](const Place& a, const Place& b) { return a.voxel < b.voxel; });
   const EdgesOfPairs edges = edgesOf(places);
-  double ofPair = 0;
-  for (const auto& [classes, seen] : edges) ofPair += seen.once / static_cast<double>(edges.size());
+  double once = 0;
+  for (const auto& [classes, seen] : edges) once += seen.once;
+  const double ofPair = edges.empty() ? 0 : once / static_cast<double>(edges.size());
   return shareWithoutGain(kHalvingsOfShare, [&edges, ofPair](double share) {
     std::vector<double> gains(kPairsLeftOut);
     for (const auto& [classes, seen] : edges)
