@@ -145,6 +145,15 @@ TEST_F(PlannerTest, aVehicleStandsOnTheGroundThatIsAroundItWhereTheMapKnowsNone)
   }
 }
 
+TEST_F(PlannerTest, groundThatAnEarlierStartHadBelowIsFreeNoLonger) {
+  paintAround(world, 3);
+  options.shorten = true;
+  SemanticPlanner p = planner();
+  const TPose2D from{3.3, -5, M_PI / 2}, to{3.3, 5, M_PI / 2};
+  ASSERT_TRUE(p.plan({0, 0, 0.3}, {8, 0, 0}).found());
+  EXPECT_EQ(p.plan(from, to).length, planner().plan(from, to).length);
+}
+
 TEST_F(PlannerTest, aVehicleStandsOnASlopeAsTheGroundAroundItDoes) {
   constexpr double kSlope = 0.3;
   for (double x = -12; x < 12; x += 0.2)

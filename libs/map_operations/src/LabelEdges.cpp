@@ -47,7 +47,7 @@ bool agree(const std::string& labels, Place& place) {
 struct Edges {
   double always = 0, once = 0, alike = 0;
 };
-using EdgesOfPairs = std::map<std::pair<char, char>, Edges>;
+using EdgesOfPairs = std::map<std::pair<unsigned char, unsigned char>, Edges>;
 
 /** Scan by scan, where the other scans are of one mind. Voxels of as many labels were seen by the
  * same scans, nearly always. */
@@ -55,7 +55,7 @@ void count(const Place& a, const Place& b, EdgesOfPairs& edges) {
   const std::size_t n = a.labels->size();
   if (b.labels->size() != n) return;
   const std::size_t i = std::min(a.exception, b.exception);
-  const auto ofPair = [&edges](char x, char y) -> Edges& {
+  const auto ofPair = [&edges](unsigned char x, unsigned char y) -> Edges& {
     return edges[{std::min(x, y), std::max(x, y)}];
   };
   if (a.differs() && b.differs()) {
@@ -84,17 +84,6 @@ EdgesOfPairs edgesOf(const std::vector<Place>& places) {
   return edges;
 }
 
-/** How far an edge in all scans may be that of wrong places, [0, 1]. Of the voxels beside one at a
- * straight edge half are like it; if those beside a wrong one are not, places err one by one. */
-double patchesIn(const EdgesOfPairs& edges) {
-  double once = 0, alike = 0;
-  for (const auto& [classes, seen] : edges) {
-    once += seen.once;
-    alike += seen.alike;
-  }
-  return alike > 0 ? std::min(1.0, 2 * alike / (once + alike)) : 0;
-}
-
 }  // namespace
 
 double alwaysWrong(const PlacedLabels& voxels,
@@ -109,10 +98,16 @@ double alwaysWrong(const PlacedLabels& voxels,
   std::sort(places.begin(), places.end(),
             [](const Place& a, const Place& b) { return a.voxel < b.voxel; });
   EdgesOfPairs edges = edgesOf(places);
-  const double patches = patchesIn(edges);
+  Edges all;
+  for (const auto& [classes, seen] : edges) {
+    all.once += seen.once;
+    all.alike += seen.alike;
+  }
+  // Of the voxels beside one at a straight edge half are like it. If those beside a wrong one are
+  // not, scans err voxel by voxel, and no edge in all scans is that of a wrong place.
+  const double patches = all.alike > 0 ? std::min(1.0, 2 * all.alike / (all.once + all.alike)) : 0;
   for (auto& [classes, seen] : edges) seen.always *= patches;
-  double ofPair = 0;
-  for (const auto& [classes, seen] : edges) ofPair += seen.once / static_cast<double>(edges.size());
+  const double ofPair = edges.empty() ? 0 : all.once / static_cast<double>(edges.size());
   return shareWithoutGain(kHalvingsOfShare, [&edges, ofPair](double share) {
     std::vector<double> gains(kPairsLeftOut);
     for (const auto& [classes, seen] : edges)

@@ -71,7 +71,7 @@ OpenGround::Room OpenGround::around(Column c) {
   return (*tile)[static_cast<std::size_t>(indexInTile(c))];
 }
 
-/** Of columns without one surface, or one far above or below, all numbers stay 0. */
+/** All numbers stay 0 where a column has no surface, several, or one far above or below. */
 void OpenGround::read(Column tile, int margin, Square& z, Square& classes, Square& fits) const {
   const SurfaceWindow window(m_ground.layers().surfaces(), tile, margin);
   const Column first = firstColumnOf(tile);

@@ -132,7 +132,7 @@ class CollisionChecker::Sweep {
     return discs;
   }
 
-  /** Of columns between, where there was room, each is at most a step from the next one. */
+  /** Where there was room, each column between is at most a step from the next one. */
   [[gnu::noinline]] bool enter(Column column) {
     const int columns = m_room.ofDiscs > 0 ? std::max(std::abs(column.x - m_column.x),
                                                       std::abs(column.y - m_column.y))
