@@ -89,8 +89,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
 
 void Cli::addEvents(CLI::App& app) {
   const auto add = [&app](const char* name, const char* type, auto take, const char* help) {
-    poses::addParsed(app, name, type, take, help)
-        ->expected(1, CLI::detail::expected_max_vector_size);
+    poses::addParsed(app, name, type, take, help)->expected(1, -1);  // one or more
   };
   add(
       "--person", "T,X,Y,X2,Y2[,T2]", [this](auto& t) { events.persons.push_back(parsePerson(t)); },

@@ -24,6 +24,7 @@ namespace {
 const ros2::Qos kSensor{true, false, 50};
 const ros2::Qos kTransforms{true, false, 100}, kStaticTransforms{true, true, 100};
 constexpr std::size_t kMostLabelImages = 50, kMostLabelBytes = 500'000'000;  // wait for depth
+constexpr Stamp kBack = 30'000'000'000;  // ns; stamps that go back by more begin anew
 
 RawCloud rawOf(const ros2::PointCloud2& message) {
   RawCloud raw;
@@ -156,7 +157,9 @@ void Sensors::add(const ros2::Subscription<Message>& from, std::shared_ptr<const
 void Sensors::addLabels(std::shared_ptr<const ros2::Image> message) {
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
-    m_labels[ros2::stampOf(message->header.stamp)] = message;
+    const Stamp at = ros2::stampOf(message->header.stamp);
+    m_labels.erase(m_labels.upper_bound(at + kBack), m_labels.end());
+    m_labels[at] = message;
     std::size_t bytes = 0;
     for (const auto& [stamp, image] : m_labels) bytes += image->data._length;
     while (m_labels.size() > 1 && (m_labels.size() > kMostLabelImages || bytes > kMostLabelBytes)) {

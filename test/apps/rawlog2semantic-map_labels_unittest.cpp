@@ -282,6 +282,10 @@ TEST_F(Rawlog2SemanticMap, aRawlogThatCannotBeMappedIsRefused) {
   expectRefusal({"small.rawlog: observation 2", "lidar", "car"});
 }
 
+TEST_F(Rawlog2SemanticMap, aRawlogIsNotCountedTwice) {
+  expectRefusal({"small.rawlog: is given twice"}, "small.rawlog", {path("./small.rawlog")});
+}
+
 TEST_F(Rawlog2SemanticMap, whatIsNoRawlogIsCalledByItsNameWithTheCommandThatMakesOne) {
   folder.write("00/velodyne/000000.bin", "x");
   expectRefusal({"00: is no rawlog, but a KITTI sequence; dataset2rawlog semantic-kitti"}, "00");

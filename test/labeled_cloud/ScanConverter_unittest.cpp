@@ -60,6 +60,13 @@ TEST(LabeledClouds, aClassBeyondTheTableIsNamed) {
   EXPECT_TRUE(contains(errorConverting(obs), "its class 4 is not one of 1..3"));
 }
 
+TEST(LabeledClouds, aSensorsPoseThatIsNotFiniteIsRefused) {
+  CObservationLabeledCloud obs;
+  obs.cloud.points = {{1, 0, 0}};
+  obs.sensorPose = mrpt::poses::CPose3D(0, 0, 0, NAN, 0, 0);
+  EXPECT_TRUE(contains(errorConverting(obs), "the sensor's pose is not finite"));
+}
+
 TEST(UnlabeledClouds, countForOccupancyOnly) {
   auto map = mrpt::maps::CSimplePointsMap::Create();
   map->insertPoint(1, 2, 3);

@@ -127,6 +127,11 @@ TEST_F(LiveSensors, depthAndLabelImages) {
   live->send(depth, image);
   image.encoding = ros2::textOf(labelEncoding), image.step = 8;
   ros2::refer(image.data, labelBytes);
+  for (int i = 0; i < 60; ++i) {  // of before the clock went back
+    image.header.stamp.sec = 100 + i;
+    live->send(labels, image);
+  }
+  image.header.stamp.sec = 1;
   live->send(labels, image);
   live->place("map", "base_link", at(1, 0, 0), kSecond);
   ASSERT_TRUE(live->waitForScans(1));

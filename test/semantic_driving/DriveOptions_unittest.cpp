@@ -2,6 +2,7 @@
 #include <rapidcheck.h>
 #include <semantic_driving/PathTracker.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "PathOfArcs.h"
@@ -55,6 +56,24 @@ std::string faultOf(const std::string& lines) {
     return {};
   } catch (const std::runtime_error& e) {
     return e.what();
+  }
+}
+
+TEST(DriveOptions, BendsAreDrivenNoFasterThanTheAccelerationAllows) {
+  constexpr double kRadius = 3;  // m
+  for (const double acceleration : {0.05, 0.1, 0.2}) {
+    DriveOptions options;
+    options.maxAcceleration = acceleration;
+    PathTracker tracker(options, kFootprint);
+    tracker.setPath(pathOfArcs({{10, 1 / kRadius}}));
+    simulated_drive::SimulatedRobot robot({0, 0, 0}, options);
+    double fastest = 0;
+    for (int i = 0; i < 300; ++i) {
+      tracker.locate(robot.state());
+      robot.drive(tracker.command(robot.state(), {}, options.maxSpeed), 0.1);
+      fastest = std::max(fastest, robot.state().speed);
+    }
+    EXPECT_NEAR(fastest * fastest / kRadius, acceleration, 0.1 * acceleration);
   }
 }
 

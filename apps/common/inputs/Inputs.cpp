@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <numeric>
+#include <set>
 
 namespace inputs {
 
@@ -136,7 +137,10 @@ void TileProgress::tell(std::size_t& tilesOfFolder, std::size_t number) {
 }
 
 void checkRawlogs(const std::vector<fs::path>& files) {
+  std::set<fs::path> seen;
   for (const fs::path& file : files) {
+    if (!seen.insert(file.lexically_normal()).second)
+      throw std::runtime_error(file.string() + ": is given twice");
     std::error_code ignored;
     const bool isFolder = fs::is_directory(file, ignored);
     const std::string kind = isFolder ? kindOfFolder(file) : kindOfFile(file);

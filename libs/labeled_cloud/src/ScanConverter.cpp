@@ -117,6 +117,8 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
   const LoadedObservation loaded(observation);
   LabeledScan scan;
   observation.getSensorPose(scan.T_robot_sensor);
+  if (!toEigen(scan.T_robot_sensor).matrix().allFinite())
+    throw std::invalid_argument("the sensor's pose is not finite");
   scan.timestamp = observation.timestamp;
   scan.sensorLabel = observation.sensorLabel;
   if (source) {

@@ -34,18 +34,14 @@ fs::path placeOf(const fs::path& target) {
 
 /** What f() gives. \throw std::runtime_error naming the target, but for PlaceTaken */
 template <typename F>
-auto naming(const fs::path& target, const F& f) {
-  std::string why;
-  try {
-    return f();
-  } catch (const PlaceTaken&) {
-    throw;
-  } catch (const fs::filesystem_error& e) {
-    why = e.code().message();
-  } catch (const std::exception& e) {
-    why = e.what();
-  }
-  throw std::runtime_error(target.string() + ": cannot be written: " + why);
+auto naming(const fs::path& target, const F& f) try {
+  return f();
+} catch (const PlaceTaken&) {
+  throw;
+} catch (const fs::filesystem_error& e) {
+  throw std::runtime_error(target.string() + ": cannot be written: " + e.code().message());
+} catch (const std::exception& e) {
+  throw std::runtime_error(target.string() + ": cannot be written: " + e.what());
 }
 
 /** As the file has that is replaced. */
