@@ -1,12 +1,13 @@
 """A bag of a robot that drives towards a wall, and label images of what its camera sees.
 
-Usage: write_bag.py FOLDER; writes FOLDER/log.bag and FOLDER/labels/TIME.pgm. The ground is z = 0, the wall x = 8; LiDAR
+Usage: write_bag.py FOLDER; writes FOLDER/log.bag and FOLDER/labels/TIME.png. The ground is z = 0, the wall x = 8; LiDAR
 and camera are 1.5 m above the ground, over the robot's origin.
 """
 import math
 import os
 import struct
 import sys
+import zlib
 
 import rosbag
 import rospy
@@ -59,6 +60,15 @@ def labels(x):
     return bytes(hit(x, ray)[1] for ray in rays)
 
 
+def png(gray):
+    """A file of a row-major image."""
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    rows = b"".join(b"\0" + gray[COLS * row:COLS * (row + 1)] for row in range(ROWS))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", COLS, ROWS, 8, 0, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
 def write(folder):
     os.makedirs(os.path.join(folder, "labels"))
     with rosbag.Bag(os.path.join(folder, "log.bag"), "w") as bag:
@@ -77,8 +87,8 @@ def write(folder):
             bag.write("/camera/image", image, stamp)
             bag.write("/camera/camera_info", header(CameraInfo(height=ROWS, width=COLS), stamp, "camera"), stamp)
             bag.write("/lidar/points", cloud(x, stamp), stamp)
-            with open(os.path.join(folder, "labels", f"{100 + i}.pgm"), "wb") as file:
-                file.write(b"P5 %d %d 255\n" % (COLS, ROWS) + image.data)
+            with open(os.path.join(folder, "labels", f"{100 + i}.png"), "wb") as file:
+                file.write(png(image.data))
 
 
 if __name__ == "__main__":
