@@ -193,7 +193,7 @@ TEST(RawlogTrajectory, aPoseThatIsNotFiniteIsNamedWithItsFile) {
   const auto file =
       writeRawlog(folder / "a.rawlog", {robotPose(1, CPose3D(INFINITY, 0, 0, 0, 0, 0))});
   const std::string error = errorOf([&] { readTrajectory({file}); });
-  EXPECT_TRUE(contains(error, "a.rawlog: trajectory: the pose at 1.0"));
+  EXPECT_TRUE(contains(error, "a.rawlog: trajectory: the pose at 1 s"));
 }
 
 TEST(RawlogTrajectory, readsTheOdometryOfARealRobotsRawlog) {
