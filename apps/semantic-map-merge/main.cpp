@@ -127,6 +127,7 @@ void writeSum(const Cli& cli, std::deque<StoredMap>& stored) {
 }
 
 int run(const Cli& cli) {
+  inputs::checkOnce(cli.maps);
   cli.tiles ? cli.outputs.checkFolder(cli.out, {semantic_octree::MapFolder::kIndexFile})
             : cli.outputs.check({cli.out});
   std::map<fs::path, Eigen::Isometry3d> poses;

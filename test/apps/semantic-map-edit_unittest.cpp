@@ -237,6 +237,7 @@ TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {
   refuse("classes.semantic", "classes");
   refuse("filter.semantic", "filter parameters");
   expectRefusal(merge({name(0), "none.semantic"}, "out.semantic"), {"none.semantic"});
+  expectRefusal(merge({name(0), name(1), name(0)}, "out.semantic"), {name(0) + ": is given twice"});
 }
 
 TEST_F(SemanticMapMerge, posesThatMakeNoSenseAreRefusedByLine) {

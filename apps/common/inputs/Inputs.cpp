@@ -136,11 +136,16 @@ void TileProgress::tell(std::size_t& tilesOfFolder, std::size_t number) {
       done, std::to_string(done) + (inOrder ? " of " + std::to_string(m_total) : "") + " tiles");
 }
 
-void checkRawlogs(const std::vector<fs::path>& files) {
+void checkOnce(const std::vector<fs::path>& files) {
   std::set<fs::path> seen;
-  for (const fs::path& file : files) {
+  for (const fs::path& file : files)
     if (!seen.insert(file.lexically_normal()).second)
       throw std::runtime_error(file.string() + ": is given twice");
+}
+
+void checkRawlogs(const std::vector<fs::path>& files) {
+  checkOnce(files);
+  for (const fs::path& file : files) {
     std::error_code ignored;
     const bool isFolder = fs::is_directory(file, ignored);
     const std::string kind = isFolder ? kindOfFolder(file) : kindOfFile(file);

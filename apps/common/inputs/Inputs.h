@@ -67,6 +67,9 @@ class TileProgress {
   std::optional<Progress> m_progress;
 };
 
+/** \throw std::runtime_error naming the first that is given twice: it would count twice. */
+void checkOnce(const std::vector<std::filesystem::path>& files);
+
 /** \throw std::runtime_error naming the first that is given twice, or is a folder or a file of
  * another kind, what it is, and which command makes a rawlog of it. */
 void checkRawlogs(const std::vector<std::filesystem::path>& files);
