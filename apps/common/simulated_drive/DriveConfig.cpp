@@ -18,7 +18,7 @@ void PoseOptions::describe(strict_files::OptionList& list) {
   list.add("odometry_noise", odometryNoise, "m", between(0, 1),
            "standard deviation of the way after a meter; grows with its square root");
   list.add("turn_noise", turnNoise, "degrees", between(0, 90),
-           "error of the heading after a meter; grows alike");
+           "standard deviation of the heading after a meter; grows alike");
 }
 
 void PoseOptions::validate() const { strict_files::checkOptions(*this, "PoseOptions"); }

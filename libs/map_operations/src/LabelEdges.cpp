@@ -42,10 +42,10 @@ bool agree(const std::string& labels, Place& place) {
   return differs == labels.end() || std::none_of(differs + 1, labels.end(), other);
 }
 
-/** How often two classes lie beside each other; and how often one scan takes both of two voxels for
- * another class, more than two scans do. */
+/** How often two classes lie beside each other. */
 struct Edges {
-  double always = 0, once = 0, alike = 0;
+  double always = 0, once = 0;
+  double alike = 0;  ///< voxels that one scan mistakes alike, less what two scans do by chance
 };
 using EdgesOfPairs = std::map<std::pair<unsigned char, unsigned char>, Edges>;
 

@@ -39,8 +39,8 @@ class LabelProcess {
   const std::vector<std::vector<double>>& counts() const { return m_counts; }
   /** p(class k + 1), given a voxel's labels. */
   std::vector<double> classesOf(const std::string& labels) const;
-  /** What voxels look like need not be what they are: in all scans alike, a class looks like
-   * another one so many times as often as a scan's label takes it for that. \param always [0, 1] */
+  /** Voxels may be wrong in all scans alike.
+   * \param always how often, as a multiple of how often in one scan, [0, 1] */
   void setAlwaysWrong(double always);
 
  private:

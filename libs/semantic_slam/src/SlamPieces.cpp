@@ -131,7 +131,7 @@ bool SlamEngine::joinPiece() {
 
 bool SlamEngine::joinParts() {
   bool moved = false;
-  m_report.twofold = 0;  // looks from now on take all that they need
+  m_report.twofold = 0;  // all parts are looked for again
   auto all = parts();
   for (std::size_t i = 1; i < all.size(); ++i)
     if (join(all[i], findPart(all[0], all[i]))) {
