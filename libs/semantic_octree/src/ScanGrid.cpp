@@ -151,14 +151,36 @@ struct AxisLanes {
   }
 };
 
-/** Bytes, not words: a voxel's neighbors on the ray are often in the same word, and reading what
- * was just written takes time. */
-MSO_INLINE void mark(std::uint8_t* bytes, const LaneBits& position) {
-  std::int64_t bits[kNumLanes];
-  std::memcpy(bits, &position, sizeof bits);
-  for (const std::int64_t bit : bits) bytes[bit >> 3] |= static_cast<std::uint8_t>(1 << (bit & 7));
-}
+/** Progress of as many rays as there are lanes. What changes is copied, so that it stays in
+ * registers. */
+struct RayProgress {
+  AxisLanes &x, &y, &z;
+  Lanes nextX = x.next, nextY = y.next, nextZ = z.next;
+  LaneBits atX = x.position, atY = y.position, atZ = z.position;
 
+  MSO_INLINE void step(std::uint8_t* bytes) {
+    const LaneBits position = atX + atY + atZ;
+    const LaneBits isX = (nextX < nextY) & (nextX < nextZ);
+    const LaneBits isY = ~isX & (nextY < nextZ);
+    const LaneBits isZ = ~(isX | isY);
+    nextX += x.deltaWhere(isX), atX = x.movedWhere(isX, atX);
+    nextY += y.deltaWhere(isY), atY = y.movedWhere(isY, atY);
+    nextZ += z.deltaWhere(isZ), atZ = z.movedWhere(isZ, atZ);
+    // Bytes, not words: a voxel's neighbors on the ray are often in the same word, and reading what
+    // was just written takes time.
+    std::int64_t bits[kNumLanes];
+    std::memcpy(bits, &position, sizeof bits);
+    for (const std::int64_t bit : bits)
+      bytes[bit >> 3] |= static_cast<std::uint8_t>(1 << (bit & 7));
+  }
+  MSO_INLINE void keep() const {
+    x.next = nextX, y.next = nextY, z.next = nextZ;
+    x.position = atX, y.position = atY, z.position = atZ;
+  }
+};
+
+/** Follows twice as many rays as there are lanes: while one half waits for memory, the other goes
+ * on. */
 class RayLanes {
  public:
   MSO_INLINE RayLanes(ScanGrid& grid, const Eigen::Array3d& begin)
@@ -166,44 +188,47 @@ class RayLanes {
         m_bytes(reinterpret_cast<std::uint8_t*>(grid.words())),
         m_begin(begin),
         m_first(begin.cast<int>()) {
-    for (int axis = 0; axis < 3; ++axis) m_axes[axis].field = grid.field(axis).mask;
+    for (auto& axes : m_axes)
+      for (int axis = 0; axis < 3; ++axis) axes[axis].field = grid.field(axis).mask;
   }
 
   MSO_INLINE void follow(const Eigen::Array3d* ends, std::size_t numRays) {
     m_next = ends;
     m_last = ends + numRays;
-    while (refill()) {
-      const std::int64_t steps = *std::min_element(m_left, m_left + kNumLanes);
+    for (;;) {
+      refill();
+      const std::int64_t steps = *std::min_element(m_left, m_left + kNumRays);
+      if (steps > kIdle / 2) return;
       advance(steps);
       for (std::int64_t& left : m_left) left -= steps;
     }
-    for (int lane = 0; lane < kNumLanes; ++lane) finish(lane);
   }
 
  private:
+  static constexpr int kNumRays = 2 * kNumLanes;
   /** Neighbors in a scan would often be in the same byte at the same time, so that one waits for
    * the other: each lane takes this many of them, one after the other. */
   static constexpr std::ptrdiff_t kRaysAtATime = 128;
+  /** Steps left to a lane without a ray: more than all rays take. */
+  static constexpr std::int64_t kIdle = INT64_MAX;
 
   struct Part {
     const Eigen::Array3d *next = nullptr, *end = nullptr;
     std::ptrdiff_t size() const { return end - next; }
   };
 
-  /** \return whether every lane has a ray */
-  MSO_INLINE bool refill() {
-    for (int lane = 0; lane < kNumLanes; ++lane)
-      while (m_left[lane] == 0)
-        if (!startNext(lane)) return false;
-    return true;
+  MSO_INLINE void refill() {
+    for (int lane = 0; lane < kNumRays; ++lane)
+      while (m_left[lane] == 0) startNext(lane);
   }
 
-  MSO_INLINE bool startNext(int lane) {
+  /** Without a ray a lane stays in the voxel where all begin. */
+  MSO_INLINE void startNext(int lane) {
     Part& part = m_parts[lane];
     if (part.size() == 0) part = m_next == m_last ? halfOfAnother() : nextPart();
-    if (part.size() == 0) return false;
-    start(lane, *part.next++);
-    return true;
+    if (part.size() > 0) return start(lane, *part.next++);
+    start(lane, m_begin);
+    m_left[lane] = kIdle;
   }
 
   MSO_INLINE Part nextPart() {
@@ -212,9 +237,9 @@ class RayLanes {
     return part;
   }
 
-  /** In the end lanes help each other, so that few rays are followed alone. */
+  /** In the end lanes help each other, so that few are idle. */
   MSO_INLINE Part halfOfAnother() {
-    Part& longest = *std::max_element(m_parts, m_parts + kNumLanes,
+    Part& longest = *std::max_element(m_parts, m_parts + kNumRays,
                                       [](const Part& a, const Part& b)
                                           MSO_ALWAYS_INLINE { return a.size() < b.size(); });
     const Part half{longest.end - (longest.size() + 1) / 2, longest.end};
@@ -222,67 +247,42 @@ class RayLanes {
     return half;
   }
 
-  /** Follows the rays that are left to a lane. */
-  MSO_INLINE void finish(int lane) {
-    do
-      for (; m_left[lane] > 0; --m_left[lane]) stepAlone(lane);
-    while (startNext(lane));
-  }
-
   MSO_INLINE void start(int lane, const Eigen::Array3d& end) {
     m_left[lane] = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      AxisLanes& a = m_axes[axis];
+      AxisLanes& a = m_axes[lane / kNumLanes][axis];
+      const int at = lane % kNumLanes;
       const double length = end[axis] - m_begin[axis];
       const int first = m_first[axis], steps = std::abs(static_cast<int>(end[axis]) - first);
       const double delta = 1.0 / std::fabs(length);
       const double toBorder = length > 0 ? first + 1 - m_begin[axis] : m_begin[axis] - first;
-      a.next[lane] = steps > 0 ? toBorder * delta : HUGE_VAL;
-      a.delta[lane] = steps > 0 ? delta : 0;
-      a.position[lane] = static_cast<std::int64_t>(m_grid.offsets(axis)[first]);
-      a.step[lane] = length > 0 ? m_grid.field(axis).up() : m_grid.field(axis).down();
+      a.next[at] = steps > 0 ? toBorder * delta : HUGE_VAL;
+      a.delta[at] = steps > 0 ? delta : 0;
+      a.position[at] = static_cast<std::int64_t>(m_grid.offsets(axis)[first]);
+      a.step[at] = steps == 0   ? 0
+                   : length > 0 ? m_grid.field(axis).up()
+                                : m_grid.field(axis).down();
       m_left[lane] += steps;
     }
   }
 
-  /** All lanes take so many steps. What changes is copied, so that it stays in registers. */
+  /** All rays take so many steps. */
   MSO_INLINE void advance(std::int64_t steps) {
-    AxisLanes &x = m_axes[0], &y = m_axes[1], &z = m_axes[2];
-    Lanes nextX = x.next, nextY = y.next, nextZ = z.next;
-    LaneBits atX = x.position, atY = y.position, atZ = z.position;
-    std::uint8_t* const bytes = m_bytes;
-    for (; steps > 0; --steps) {
-      const LaneBits position = atX + atY + atZ;
-      const LaneBits isX = (nextX < nextY) & (nextX < nextZ);
-      const LaneBits isY = ~isX & (nextY < nextZ);
-      const LaneBits isZ = ~(isX | isY);
-      nextX += x.deltaWhere(isX), atX = x.movedWhere(isX, atX);
-      nextY += y.deltaWhere(isY), atY = y.movedWhere(isY, atY);
-      nextZ += z.deltaWhere(isZ), atZ = z.movedWhere(isZ, atZ);
-      mark(bytes, position);
-    }
-    x.next = nextX, y.next = nextY, z.next = nextZ;
-    x.position = atX, y.position = atY, z.position = atZ;
-  }
-
-  MSO_INLINE void stepAlone(int lane) {
-    AxisLanes &x = m_axes[0], &y = m_axes[1], &z = m_axes[2];
-    const std::int64_t bit = x.position[lane] + y.position[lane] + z.position[lane];
-    m_bytes[bit >> 3] |= static_cast<std::uint8_t>(1 << (bit & 7));
-    const bool isX = x.next[lane] < y.next[lane] && x.next[lane] < z.next[lane];
-    AxisLanes& a = isX ? x : y.next[lane] < z.next[lane] ? y : z;
-    a.next[lane] += a.delta[lane];
-    a.position[lane] = (a.position[lane] + a.step[lane]) & a.field;
+    auto& [a, b] = m_axes;
+    RayProgress one{a[0], a[1], a[2]}, other{b[0], b[1], b[2]};
+    for (std::uint8_t* const bytes = m_bytes; steps > 0; --steps)
+      one.step(bytes), other.step(bytes);
+    one.keep(), other.keep();
   }
 
   ScanGrid& m_grid;
   std::uint8_t* m_bytes;
   Eigen::Array3d m_begin;
   Eigen::Array3i m_first;
-  AxisLanes m_axes[3];
+  AxisLanes m_axes[2][3];
   const Eigen::Array3d *m_next = nullptr, *m_last = nullptr;
-  Part m_parts[kNumLanes];
-  std::int64_t m_left[kNumLanes] = {};
+  Part m_parts[kNumRays];
+  std::int64_t m_left[kNumRays] = {};
 };
 
 }  // namespace
