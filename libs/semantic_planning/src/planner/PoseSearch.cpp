@@ -315,8 +315,8 @@ std::vector<Length> costsToGo(const std::vector<PathPoint>& path, bool isReverse
 std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path, bool isReversed,
                                              const CollisionChecker& checker,
                                              const ClassPrices& prices) {
-  constexpr double kLeast = 8, kInTurningRadii = 2.5, kSpacing = 0.5;  // m
-  constexpr double kAlong = 1.5, kReach = 0.6;                         // of the radius
+  constexpr double kLeast = 8, kInTurningRadii = 2.5, kSpacing = 0.5, kMargin = 0.3;  // m
+  constexpr double kAlong = 1.5, kReach = 0.6;  // of the radius
   constexpr int kPoses = 500, kShare = 6;
   const Ground& ground = checker.ground();
   const double radius = std::max(kLeast, kInTurningRadii * checker.reedsShepp().turningRadius());
@@ -327,6 +327,7 @@ std::optional<std::vector<PathPoint>> better(const std::vector<PathPoint>& path,
   double last = 0;
   for (std::size_t i = 1; i < path.size() && path[i].arcLength < kAlong * radius; ++i) {
     const PathPoint& p = path[i];
+    if (std::hypot(p.x - path[0].x, p.y - path[0].y) > radius - kMargin) continue;
     search.addRest(poseAt(p, ground), toGo[i]);
     if (p.arcLength < last + kSpacing && i + 1 < path.size()) continue;
     last = p.arcLength;
