@@ -173,6 +173,22 @@ TEST_F(GoalFit, IsNotRefusedForWhatIsNotKnown) {
   }
 }
 
+TEST_F(GoalFit, IsNotRefusedForGroundThatIsSteepWhereItIsOnlyGuessed) {
+  synthetic_world::Random random(7);
+  for (double y = -8; y < 8; y += 0.6) {
+    const double top = 0.2 * std::floor(random.uniform(0, 5));
+    world.box(10, 10.2, y, y + 0.2, top - 0.2, top, PaintedWorld::Road);
+  }
+  const SemanticPlanner planner = plannerOver(world);
+  int steep = 0;
+  for (double y = -7; y < 7; y += 0.1) {
+    const TPose2D goal(9.1, y, M_PI / 2);
+    steep += planner.check(goal, 0.4) == PlanStatus::StartBlocked;
+    EXPECT_FALSE(findMisfit(planner, kStart, 0, goal)) << goal.asString();
+  }
+  EXPECT_GT(steep, 20);
+}
+
 TEST_F(GoalFit, OfAThingAmongTheUnknownNothingIsSaid) {
   world.box(12, 12.2, -1, 1, 0.6, 1.4, PaintedWorld::Wall);  // a board, 4 m beyond all ground
   EXPECT_FALSE(findMisfit(plannerOver(world), kStart, 0, {12, 0, 0}));

@@ -118,6 +118,7 @@ std::optional<GoalMisfit> findMisfit(const SemanticPlanner& planner, const TPose
     if (distance >= nearest || !heights.contains(c)) return;
     const int height = heights.height(c);
     const Surface* s = ground.near(c, height, ground.step());
+    if (s && s->filled) return;  // as steep as it may be, nobody saw it
     if (!(wheels ? belowWheels : around).isObstacle(c, height, s)) return;
     if (!isAtSeenGround(ground, heights, c)) return;
     nearest = distance;

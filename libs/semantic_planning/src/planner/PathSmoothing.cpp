@@ -206,40 +206,16 @@ class Smoothing {
     return profile.has_value();
   }
 
-  /** What was proposed before and is not near what changed stays. */
   bool improve() {
+    m_replacements.clear();
     for (std::size_t a = 0; a < m_parts.size(); ++a)
       for (std::size_t b = a + 1; b < m_parts.size() && b <= a + 1 + kMostReplaced; ++b) {
         if (m_parts[b - 1].arc.length < 0 || m_parts[b].arc.length < 0) break;
-        if (b > a + 1 && isNew(a, b)) propose(a, b);
+        if (b > a + 1) propose(a, b);
       }
-    m_firstNew = m_numbers;
     std::sort(m_replacements.begin(), m_replacements.end());
-    const std::size_t parts = m_parts.size();
-    const auto applied = std::find_if(m_replacements.begin(), m_replacements.end(),
-                                      [this](const Replacement& r) { return apply(r); });
-    if (applied == m_replacements.end()) return false;
-    keepBeside(applied->before, applied->after, m_parts.size() - parts);
-    return true;
-  }
-
-  /** Whether parts between two are, or one next to these. */
-  bool isNew(std::size_t a, std::size_t b) const {
-    const auto begin = m_parts.begin();
-    return std::any_of(begin + static_cast<std::ptrdiff_t>(a - std::min<std::size_t>(a, 1)),
-                       begin + static_cast<std::ptrdiff_t>(std::min(b + 2, m_parts.size())),
-                       [this](const Part& p) { return p.number >= m_firstNew; });
-  }
-
-  /** What is proposed where no part came or went. \param more parts than before, modulo 2^64 */
-  void keepBeside(std::size_t before, std::size_t after, std::size_t more) {
-    const auto touches = [=](const Replacement& r) {
-      return r.after + 1 >= before && r.before <= after + 1;
-    };
-    m_replacements.erase(std::remove_if(m_replacements.begin(), m_replacements.end(), touches),
-                         m_replacements.end());
-    for (Replacement& r : m_replacements)
-      if (r.before > after) r.before += more, r.after += more;
+    return std::any_of(m_replacements.begin(), m_replacements.end(),
+                       [this](const Replacement& r) { return apply(r); });
   }
 
   void propose(std::size_t a, std::size_t b) {
@@ -354,7 +330,7 @@ class Smoothing {
   std::vector<Replacement> m_replacements;
   std::set<std::tuple<int, int, std::size_t>> m_seen;
   int m_end = 0;  ///< key of the surface where the path ends
-  int m_numbers = 0, m_firstNew = 0, m_looks = 2000;
+  int m_numbers = 0, m_looks = 2000;
 };
 
 }  // namespace

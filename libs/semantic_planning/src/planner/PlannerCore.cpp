@@ -76,7 +76,8 @@ struct PlannerCore::Sliced {
 PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
                          const colored_graph::ClassOrder& order, const PlannerOptions& options,
                          const std::optional<Corridor>& corridor)
-    : m_follower(map.follow()),
+    : m_map(map),
+      m_follower(map.follow()),
       m_options(validated(options, map)),
       m_isInCorridor(corridor),
       m_ground(map, options.vehicle, options.ground, order,
@@ -88,7 +89,6 @@ PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
       m_search(options.graphSearch ? options.graphSearch()
                                    : std::make_unique<colored_graph::ColoredGraphSearch>()) {
   m_follower.skipTiles();  // the ground began with the whole map
-  if (mayNeedRoadmap(options)) m_candidates.emplace(map, m_ground, options.roadmap);
 }
 
 void PlannerCore::checkFinite(const char* what, const Place& place) {
@@ -186,7 +186,6 @@ void PlannerCore::standAt(const Place& start) {
   const auto assume = [this](const std::vector<GroundPoint>& points) {
     const std::vector<Column> tiles = m_ground.assume(points);
     if (!tiles.empty()) m_checkerOfSearch.reset();
-    if (m_candidates && !tiles.empty()) m_candidates->update({}, tiles);
   };
   assume({});
   const PlanStatus status = placed(start, m_startPose);
@@ -204,10 +203,8 @@ void PlannerCore::makeRoadmap() {
   m_search->forget();
   const PlanningRegion region(m_ground, m_startPose->pose, m_goalPose->pose,
                               m_isInCorridor ? kEverywhere : m_options.roadmap.buffer);
-  m_roadmap = std::make_unique<MapRoadmap>(*m_candidates, m_checker, m_options.roadmap,
-                                           *m_startPose, region);
-  if (m_isInCorridor)
-    m_candidates->forget();  // of a map that is too large: they take as much as ground
+  m_roadmap =
+      std::make_unique<MapRoadmap>(m_map, m_checker, m_options.roadmap, *m_startPose, region);
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);
   m_goal = m_roadmap->roadmap().addQueryVertex(*m_goalPose);
 }
@@ -258,7 +255,6 @@ void PlannerCore::forget() {
   abandon();
   m_search->forget();
   m_roadmap.reset();
-  if (m_candidates) m_candidates->forget();
   m_kept.drop();
   m_hasPlanned = false;
 }
@@ -273,7 +269,6 @@ PlannerCore::MapChange PlannerCore::followMap(StageClock& clock) {
   m_kept.groundChanged(change.tiles);
   if (m_sliced)
     m_sliced->changed.insert(m_sliced->changed.end(), change.tiles.begin(), change.tiles.end());
-  if (m_candidates) m_candidates->update(touched, change.tiles);
   return change;
 }
 

@@ -9,7 +9,6 @@
 #include "ClassPrices.h"
 #include "KeptPath.h"
 #include "RelaxedField.h"
-#include "roadmap/Candidates.h"
 #include "roadmap/MapRoadmap.h"
 
 namespace semantic_planning {
@@ -115,6 +114,7 @@ class PlannerCore {
   PlanResult searchRoadmap(StageClock& clock);
   PlanResult noPath(const RelaxedPath& relaxed, const Task& task) const;
 
+  semantic_octree::SemanticOcTree& m_map;
   semantic_octree::MapFollower m_follower;  ///< of what the ground has not read
   const PlannerOptions m_options;
   const bool m_isInCorridor;
@@ -123,7 +123,6 @@ class PlannerCore {
   std::optional<CollisionChecker> m_checkerOfSearch;  ///< none since the ground changed
   const ClassPrices m_prices;
   KeptPath m_kept;
-  std::optional<CandidateStore> m_candidates;  ///< if a roadmap is what it plans with
   colored_graph::CostModel m_model;
   std::unique_ptr<MapRoadmap> m_roadmap;
   std::optional<GroundPose> m_startPose, m_goalPose;

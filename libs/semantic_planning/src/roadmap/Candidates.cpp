@@ -242,47 +242,4 @@ std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const Collisio
   return candidates;
 }
 
-using semantic_octree::Abstraction;
-using semantic_octree::LeafCell;
-
-CandidateStore::CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
-                               const RoadmapOptions& options)
-    : m_map(map), m_follower(map), m_ground(ground), m_options(options) {
-  if (follows()) m_follower.skipLeaves();  // begins with all
-}
-
-const std::vector<CandidatePoint>& CandidateStore::in(Column tile) {
-  const auto [kept, isNew] = m_points.try_emplace(tile);
-  if (isNew) kept->second = compressedPoints(tile, Abstraction(m_map), m_ground, m_options);
-  return kept->second;
-}
-
-void CandidateStore::forgetIn(const semantic_octree::Cube& leaf) {
-  const Column low{leaf.lowest.x(), leaf.lowest.y()};
-  const Column first = tileOf(low),
-               last = tileOf({low.x + leaf.edge() - 1, low.y + leaf.edge() - 1});
-  for (int x = first.x; x <= last.x; ++x)
-    m_points.erase(m_points.lower_bound({x, first.y}), m_points.upper_bound({x, last.y}));
-}
-
-/** Where leaves came or went, and where those that stayed may be of another class, or have become
- * occupied or free. */
-void CandidateStore::followTree(const semantic_octree::TileChange& touched) {
-  const semantic_octree::TreeChange change = m_follower.leaves();
-  if (touched.all || change.all) return forget();
-  for (const auto* leaves : {&change.removed, &change.added})
-    for (const LeafCell& leaf : *leaves) forgetIn(leaf);
-  const Abstraction abstraction(m_map);
-  for (const octomap::OcTreeKey& key : touched.tiles) {
-    m_points.erase(tileOf({key[0], key[1]}));
-    for (const LeafCell& leaf : abstraction.leavesIn(key, key, false)) forgetIn(leaf);
-  }
-}
-
-void CandidateStore::update(const semantic_octree::TileChange& touched,
-                            const std::vector<Column>& changedTiles) {
-  if (follows()) followTree(touched);
-  for (const Column& tile : changedTiles) m_points.erase(tile);
-}
-
 }  // namespace semantic_planning

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -90,33 +89,5 @@ std::optional<GroundPose> haltonPose(unsigned draw, const PlanningRegion& region
 /** A number in [0, 1) that spreads the cells of a grid: the fraction of cells below any bound is
  * the bound, in every neighborhood (ordered dithering, Bayer 1973). */
 double dither(unsigned x, unsigned y, unsigned seed);
-
-/** The candidate points of GraphKind::Compressed and Leaves, which depend on the map and not on
- * start and goal: each tile's are looked for once and kept until the map changes there. */
-class CandidateStore {
- public:
-  /** \param map, ground must outlive the store; with kinds of the tree (isOfTree) the map keeps
-   * G-values.
-   */
-  CandidateStore(semantic_octree::SemanticOcTree& map, const Ground& ground,
-                 const RoadmapOptions& options);
-
-  const std::vector<CandidatePoint>& in(Column tile);
-  void forget() { m_points.clear(); }
-  /** Forgets where the map changed. \param changedTiles of the ground */
-  void update(const semantic_octree::TileChange& touched, const std::vector<Column>& changedTiles);
-
- private:
-  /** Whether the compressed tree's changes matter. */
-  bool follows() const { return isOfTree(m_options.kind) && !m_map.isReadOnly(); }
-  void forgetIn(const semantic_octree::Cube& leaf);
-  void followTree(const semantic_octree::TileChange& touched);
-
-  semantic_octree::SemanticOcTree& m_map;
-  semantic_octree::LeafFollower m_follower;  ///< of the compressed tree's leaves
-  const Ground& m_ground;
-  const RoadmapOptions m_options;
-  std::map<Column, std::vector<CandidatePoint>> m_points;  ///< by tile
-};
 
 }  // namespace semantic_planning

@@ -133,7 +133,7 @@ class CollisionChecker::Sweep {
   }
 
   /** Where there was room, each column between is at most a step from the next one. */
-  [[gnu::noinline]] bool enter(Column column) {
+  bool enter(Column column) {
     const int columns = m_room.ofDiscs > 0 ? std::max(std::abs(column.x - m_column.x),
                                                       std::abs(column.y - m_column.y))
                                            : 1;
@@ -168,7 +168,7 @@ class CollisionChecker::Sweep {
     return true;
   }
 
-  [[gnu::noinline]] bool isFreeBetween(const CheckedDisc& d, Column last, Column column,
+  bool isFreeBetween(const CheckedDisc& d, Column last, Column column,
                                        const Placement& placed) const {
     const auto [fromX, fromY] = m_last(d.disc.x, d.disc.y);
     const auto [x, y] = placed(d.disc.x, d.disc.y);

@@ -19,10 +19,10 @@ RoadmapOptions withDefaults(RoadmapOptions options) {
 
 }  // namespace
 
-MapRoadmap::MapRoadmap(CandidateStore& store, const CollisionChecker& checker,
+MapRoadmap::MapRoadmap(semantic_octree::SemanticOcTree& map, const CollisionChecker& checker,
                        const RoadmapOptions& options, const GroundPose& start,
                        const PlanningRegion& region)
-    : m_store(store),
+    : m_map(map),
       m_checker(checker),
       m_options(withDefaults(options)),
       m_region(region),
@@ -47,10 +47,12 @@ bool MapRoadmap::isUsable(const GroundPose& pose) const {
          m_checker.order().rank(m_checker.classAt(pose)) != colored_graph::kForbidden;
 }
 
-std::vector<GroundPose> MapRoadmap::byPriority() {
+std::vector<GroundPose> MapRoadmap::byPriority() const {
+  const Ground& ground = m_checker.ground();
+  const semantic_octree::Abstraction abstraction(m_map);
   std::vector<CandidatePoint> points;
-  for (const Column& tile : inMortonOrder(tilesIn(m_region, m_checker.ground()))) {
-    const std::vector<CandidatePoint>& more = m_store.in(tile);
+  for (const Column& tile : inMortonOrder(tilesIn(m_region, ground))) {
+    const auto more = compressedPoints(tile, abstraction, ground, m_options);
     points.insert(points.end(), more.begin(), more.end());
   }
   const auto isLater = [](const CandidatePoint& l, const CandidatePoint& r) { return r < l; };

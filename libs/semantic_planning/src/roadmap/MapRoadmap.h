@@ -13,9 +13,9 @@ namespace semantic_planning {
  * the map was before. */
 class MapRoadmap {
  public:
-  /** \param store, checker must outlive the roadmap \param start on the ground */
-  MapRoadmap(CandidateStore& store, const CollisionChecker& checker, const RoadmapOptions& options,
-             const GroundPose& start, const PlanningRegion& region);
+  /** \param map, checker must outlive the roadmap \param start on the ground */
+  MapRoadmap(semantic_octree::SemanticOcTree& map, const CollisionChecker& checker,
+             const RoadmapOptions& options, const GroundPose& start, const PlanningRegion& region);
 
   Roadmap& roadmap() { return m_roadmap; }
 
@@ -31,10 +31,10 @@ class MapRoadmap {
   bool isReachable(const GroundPose& pose) const;
   bool isUsable(const GroundPose& pose) const;
   /** Poses for vertices. */
-  std::vector<GroundPose> byPriority();
+  std::vector<GroundPose> byPriority() const;
   std::vector<GroundPose> ofHalton() const;
 
-  CandidateStore& m_store;
+  semantic_octree::SemanticOcTree& m_map;  ///< keeps G-values for kinds of the tree (isOfTree)
   const CollisionChecker& m_checker;
   const RoadmapOptions m_options;
   const PlanningRegion m_region;
