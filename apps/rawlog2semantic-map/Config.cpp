@@ -2,7 +2,7 @@
 
 #include <labeled_cloud/NetworkLabeler.h>
 #include <labeled_cloud/Rawlogs.h>
-#include <mrpt/config/CConfigFile.h>
+#include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <mrpt/obs/CObservationOdometry.h>
@@ -94,7 +94,7 @@ Trajectory loadTrajectory(const fs::path& file, const std::vector<fs::path>& raw
 }
 
 using labeled_cloud::ScanStreamOptions;
-using mrpt::config::CConfigFile;
+using mrpt::config::CConfigFileMemory;
 using strict_files::OptionList;
 using strict_files::readOptions;
 using strict_files::readSection;
@@ -105,14 +105,14 @@ namespace {
 constexpr const char* kCameraSections = "camera *";
 
 /** The label model is known by [labels]. */
-void readInsertion(const CConfigFile& ini, semantic_map::TInsertionOptions& insertion) {
+void readInsertion(const CConfigFileMemory& ini, semantic_map::TInsertionOptions& insertion) {
   OptionList list = OptionList::of(insertion);
   for (const auto& name : OptionList::of(insertion.conversion.labels).names()) list.remove(name);
   readOptions(ini, "insertion", list);
   insertion.validate();
 }
 
-labeled_cloud::CameraCalibration readCamera(const CConfigFile& ini, const std::string& name) {
+labeled_cloud::CameraCalibration readCamera(const CConfigFileMemory& ini, const std::string& name) {
   labeled_cloud::CameraDescription camera;
   const auto section = readOptions(ini, name, OptionList::of(camera));
   try {
@@ -122,7 +122,7 @@ labeled_cloud::CameraCalibration readCamera(const CConfigFile& ini, const std::s
   }
 }
 
-void readCameras(const CConfigFile& ini, Config& config) {
+void readCameras(const CConfigFileMemory& ini, Config& config) {
   readSection(ini, "cameras", config.cameras);
   const std::string prefix = std::string(kCameraSections, std::string(kCameraSections).size() - 1);
   std::vector<std::string> names;
@@ -137,7 +137,7 @@ void readCameras(const CConfigFile& ini, Config& config) {
 
 Config loadConfig(const fs::path& file) {
   Config config;
-  strict_files::readIniFile<CConfigFile>(file, [&](const CConfigFile& ini) {
+  strict_files::readIniFile<CConfigFileMemory>(file, [&](const CConfigFileMemory& ini) {
     strict_files::checkSections(ini, {"map", "insertion", "abstraction", "labels", "cameras",
                                       kCameraSections, "slam", "pictures"});
     readSection(ini, "map", config.map);

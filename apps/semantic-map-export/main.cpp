@@ -137,8 +137,9 @@ class Exporter {
 
   template <class Writer>
   void stage(const fs::path& file, const Writer& write) {
-    std::ofstream out(staged(file), std::ios::binary);
+    const fs::path place = staged(file);
     errno = 0;
+    std::ofstream out(place, std::ios::binary);
     try {
       write(out);
       out.close();

@@ -23,8 +23,6 @@ namespace {
 
 const ros2::Qos kSensor{true, false, 50};
 const ros2::Qos kTransforms{true, false, 100}, kStaticTransforms{true, true, 100};
-constexpr std::size_t kMostLabelImages = 50, kMostLabelBytes = 500'000'000;  // wait for depth
-constexpr Stamp kBack = 30'000'000'000;  // ns; stamps that go back by more begin anew
 
 RawCloud rawOf(const ros2::PointCloud2& message) {
   RawCloud raw;
@@ -157,22 +155,14 @@ void Sensors::add(const ros2::Subscription<Message>& from, std::shared_ptr<const
 void Sensors::addLabels(std::shared_ptr<const ros2::Image> message) {
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
-    const Stamp at = ros2::stampOf(message->header.stamp);
-    m_labels.erase(m_labels.upper_bound(at + kBack), m_labels.end());
-    m_labels[at] = message;
-    std::size_t bytes = 0;
-    for (const auto& [stamp, image] : m_labels) bytes += image->data._length;
-    while (m_labels.size() > 1 && (m_labels.size() > kMostLabelImages || bytes > kMostLabelBytes)) {
-      bytes -= m_labels.begin()->second->data._length;
-      m_labels.erase(m_labels.begin());
-    }
+    m_labels.add(std::move(message));
   }
   m_queue.wake();
 }
 
 bool Sensors::hasLabels(Stamp stamp) const {
   const std::lock_guard<std::mutex> lock(m_mutex);
-  return m_camera && m_labels.count(stamp) > 0;
+  return m_camera && m_labels.has(stamp);
 }
 
 SensorScan Sensors::read(const ros2::PointCloud2& message) {
@@ -203,9 +193,7 @@ SensorScan Sensors::read(const ros2::Image& depth) {
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     camera = m_camera;
-    const auto it = m_labels.find(ros2::stampOf(depth.header.stamp));
-    if (it != m_labels.end()) labels = it->second;
-    m_labels.erase(m_labels.begin(), m_labels.upper_bound(ros2::stampOf(depth.header.stamp)));
+    labels = m_labels.take(ros2::stampOf(depth.header.stamp));
   }
   if (!camera) throw std::runtime_error("no " + m_hearsCamera.name() + " came");
   const auto scan = point_fields::depthOf(rawOf(depth), rawOf(*camera));

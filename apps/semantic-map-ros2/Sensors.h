@@ -2,13 +2,13 @@
 #include <labeled_cloud/ScanConverter.h>
 
 #include <atomic>
-#include <map>
 #include <memory>
 #include <mutex>
 
 #include "Complaints.h"
 #include "Parameters.h"
 #include "ScanQueue.h"
+#include "WaitingLabels.h"
 #include "point_fields/Frames.h"
 #include "ros2/Node.h"
 
@@ -70,7 +70,7 @@ class Sensors {
   labeled_cloud::ScanConverter m_converter;
 
   mutable std::mutex m_mutex;
-  std::map<ros2::Stamp, std::shared_ptr<const ros2::Image>> m_labels;
+  WaitingLabels m_labels;
   std::shared_ptr<const ros2::CameraInfo> m_camera;
   Speeds m_speeds;
   ros2::Subscription<ros2::Clock> m_hearsClock;

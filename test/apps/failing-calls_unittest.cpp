@@ -60,6 +60,10 @@ class FailingCalls : public testing::TestWithParam<std::string> {
   /** The program with its n-th call of a kind failing; below 0: none. */
   ProgramRun run(const std::string& kind = "", int n = -1) const {
     std::string command = "cd '" + folder.path().string() + "'; ";
+    if (contains(GetParam(), "receive"))
+      command += "rm -f sent; " MSO_BIN_DIR
+                 "/semantic-map-send map.semantic --weights weights.yaml --port 0 >sent 2>&1 & "
+                 "trap 'kill $!' EXIT; until grep -qs 'port [0-9]' sent; do sleep 0.02; done; ";
     if (!kind.empty())
       command += "MSO_FAIL='" + kind + ' ' + std::to_string(n) + "' MSO_FAIL_BELOW='" +
                  folder.path().string() + "' MSO_CALLS='" + path("calls") +
@@ -129,6 +133,7 @@ const Words kJobs = {
     "semantic-map-evaluate @map.semantic --scans @small.rawlog -f -o @out",
     "semantic-map-plan @world.semantic --order @order.yaml --start=-8,0,0 --goal=8,0,0 -f -o "
     "@out",
+    "semantic-map-receive 127.0.0.1:$(grep -o '[0-9]*$' sent) -f -o @out/a.semantic",
     "rawlog2semantic-map --config @small.ini -f -o @out --save-labeled @out/a.rawlog @small.rawlog",
     "rawlog2semantic-map --config @small.ini -f -o @out --tiles @out/tiles --tile-size 4 "
     "@small.rawlog",

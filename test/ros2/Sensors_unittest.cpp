@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "LiveMap.h"
+#include "WaitingLabels.h"
 
 namespace {
 
@@ -59,6 +60,30 @@ class LiveSensors : public testing::Test {
 };
 
 }  // namespace
+
+TEST(WaitingLabels, haveRoomForAsMuchAsIsPromisedAndKeepTheNewest) {
+  semantic_map_ros2::WaitingLabels labels;
+  const auto add = [&](int second, std::uint32_t bytes) {
+    ros2::Image image{};
+    image.header.stamp.sec = second;
+    image.data._length = bytes;  // which nobody reads
+    labels.add(std::make_shared<ros2::Image>(image));
+  };
+  for (int second = 1; second <= 9; ++second) add(second, 100'000'000);
+  EXPECT_FALSE(labels.has(4 * kSecond));
+  EXPECT_TRUE(labels.has(5 * kSecond));
+  EXPECT_EQ(labels.take(8 * kSecond)->header.stamp.sec, 8);
+  EXPECT_FALSE(labels.has(7 * kSecond)) << "depth images of before do not come any more";
+  EXPECT_FALSE(labels.take(8 * kSecond));
+  for (int second = 10; second <= 70; ++second) add(second, 1);
+  EXPECT_FALSE(labels.has(20 * kSecond));
+  EXPECT_TRUE(labels.has(21 * kSecond));
+  add(71, 600'000'000);
+  EXPECT_TRUE(labels.has(71 * kSecond)) << "one has room whatever it takes";
+  EXPECT_FALSE(labels.has(70 * kSecond));
+  add(40, 1);
+  EXPECT_FALSE(labels.has(71 * kSecond)) << "the clock went back";
+}
 
 TEST_F(LiveSensors, laserScansAndOdometry) {
   start({"-p", "map_frame:=odom", "-r", "scan:=/front/laser", "-r", "odom:=/wheels"});

@@ -62,9 +62,9 @@ class Robot {
   }
   void step() {
     mrpt::Clock::setSimulatedTime(mrpt::Clock::fromDouble(1e9 + m_seconds));
-    if (m_steps++ % 5 == 0) navigator.see(scans(), m_seconds);
+    if (m_steps++ % 5 == 0) navigator.see(scans(), m_seconds + clockOff + stampsOff);
     if (afterScan) afterScan();
-    const DriveCommand c = navigator.step(m_seconds);
+    const DriveCommand c = navigator.step(m_seconds + clockOff);
     commands.push_back({c.speed, c.turn});
     m_robot.drive = {m_robot.drive.pose + TPose2D(0.1 * c.speed, 0, 0.1 * c.turn), c.speed, c.turn};
     m_seconds += 0.1;
@@ -100,7 +100,8 @@ class Robot {
   const TPose2D& pose() const { return m_robot.drive.pose; }
 
   std::function<void()> afterScan;
-  int useless = 0;  ///< points of a scan that take time and tell nothing
+  int useless = 0;                     ///< points of a scan that take time and tell nothing
+  double clockOff = 0, stampsOff = 0;  ///< seconds
   std::vector<std::pair<double, double>> commands;  ///< speed, turn
 
  private:
@@ -217,6 +218,21 @@ TEST(Navigator, HasAScanInTheMapWhenItsLatencyIsOver) {
     } else {
       EXPECT_LT(robot.navigator.mappedAt(), -1e3) << now;
     }
+  }
+}
+
+TEST(Navigator, MapsAndDrivesOnWhereItsClockLeapsOrOneStampLies) {
+  for (const double leap : {1e6, -1e6}) {
+    Robot robot(someOptions(0.3));
+    robot.navigator.setGoal({3, 2, 0});
+    for (const double seconds : {1.0, 0.4, 4.0}) {  // until its second scan, which lies
+      robot.drive(seconds);
+      if (robot.stampsOff != 0) robot.clockOff = -leap / 3;
+      robot.stampsOff = robot.clockOff == 0 ? leap : 0;
+    }
+    EXPECT_EQ(robot.drive(), Status::Arrived) << robot.navigator.reason();
+    EXPECT_LT(robot.seconds(), 30);
+    EXPECT_NEAR(robot.navigator.mappedAt(), robot.seconds(), 1);
   }
 }
 

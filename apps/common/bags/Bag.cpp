@@ -55,7 +55,7 @@ std::vector<fs::path> filesOfBag(const fs::path& bag) {
 /** A database that is only read, and whose bytes are not trusted. */
 class Database {
  public:
-  explicit Database(const std::filesystem::path& file) {
+  explicit Database(const fs::path& file) {
     sqlite3* opened = nullptr;
     const int result = sqlite3_open_v2(file.c_str(), &opened, SQLITE_OPEN_READONLY, nullptr);
     m_database.reset(opened);
@@ -65,15 +65,22 @@ class Database {
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);  // which may have no end
     sqlite3_exec(opened, "PRAGMA cell_size_check = ON", nullptr, nullptr, nullptr);
+    constexpr int kSteps = 10'000, kStepsOfByte = 10;  // a row takes some 20, and as many bytes
+    m_left = 1 + static_cast<std::int64_t>(fs::file_size(file)) * kStepsOfByte / kSteps;
+    sqlite3_progress_handler(
+        opened, kSteps, [](void* left) -> int { return --*static_cast<std::int64_t*>(left) < 0; },
+        &m_left);
   }
   void check(int result) const {
     if (result != SQLITE_OK && result != SQLITE_ROW && result != SQLITE_DONE)
       throw std::runtime_error(std::string("is no bag that can be read: ") +
-                               sqlite3_errmsg(m_database.get()));
+                               (result == SQLITE_INTERRUPT ? "its pages lead to no end"
+                                                           : sqlite3_errmsg(m_database.get())));
   }
   sqlite3* get() const { return m_database.get(); }
 
  private:
+  std::int64_t m_left = 0;  ///< 10,000 steps each; pages that hold each other lead to no end
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> m_database{nullptr, &sqlite3_close};
 };
 
@@ -88,6 +95,12 @@ class Query {
     const int result = sqlite3_step(m_statement.get());
     m_database.check(result);
     return result == SQLITE_ROW;
+  }
+  /** Its one row for another number, if there is one. */
+  bool nextFor(std::int64_t number) {
+    sqlite3_reset(m_statement.get());
+    sqlite3_bind_int64(m_statement.get(), 1, number);
+    return next();
   }
   std::int64_t number(int column) { return sqlite3_column_int64(m_statement.get(), column); }
   /** Until the next row. */
@@ -104,6 +117,9 @@ class Query {
 
 void readSqlite(const fs::path& file, const WantsTopic& wants, const TakeMessage& take) {
   const Database database(file);
+  for (const char* columns : {"pragma_table_xinfo('topics')", "pragma_table_xinfo('messages')"})
+    if (Query(database, (std::string("SELECT 1 FROM ") + columns + " WHERE hidden").c_str()).next())
+      throw std::runtime_error("is no bag that can be read: its tables compute columns");
   std::map<std::int64_t, BagTopic> wanted;
   Query topics(database, "SELECT id, name, type, serialization_format FROM topics");
   while (topics.next()) {
@@ -111,10 +127,16 @@ void readSqlite(const fs::path& file, const WantsTopic& wants, const TakeMessage
     if (topics.bytes(3) == "cdr" && wants(topic)) wanted[topics.number(0)] = topic;
   }
   if (wanted.empty()) return;
-  Query messages(database, "SELECT topic_id, data FROM messages ORDER BY timestamp");
-  while (messages.next()) {
-    const auto topic = wanted.find(messages.number(0));
-    if (topic != wanted.end() && !take(topic->second, messages.bytes(1))) return;
+  Query order(database, "SELECT rowid, topic_id FROM messages ORDER BY timestamp");
+  Query messages(database, "SELECT data FROM messages WHERE rowid = ?");
+  std::uint64_t left = fs::file_size(file);
+  while (order.next()) {
+    const auto topic = wanted.find(order.number(1));
+    if (topic == wanted.end() || !messages.nextFor(order.number(0))) continue;
+    const std::string_view message = messages.bytes(0);
+    if (message.size() > left) throw std::runtime_error("has more messages than bytes");
+    left -= message.size();
+    if (!take(topic->second, message)) return;
   }
 }
 

@@ -1,6 +1,6 @@
 #include "DriveConfig.h"
 
-#include <mrpt/config/CConfigFile.h>
+#include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/math/wrap2pi.h>
 #include <strict_files/IniSection.h>
 #include <synthetic_world/Solids.h>
@@ -76,7 +76,7 @@ void SimulatedRobot::step(const DriveCommand& command, double seconds) {
 }
 
 namespace fs = std::filesystem;
-using mrpt::config::CConfigFile;
+using mrpt::config::CConfigFileMemory;
 using strict_files::above;
 using strict_files::between;
 using strict_files::IniSection;
@@ -86,7 +86,7 @@ using strict_files::readSection;
 
 namespace {
 
-void readMap(const CConfigFile& ini, const fs::path& folder, DriveConfig& config) {
+void readMap(const CConfigFileMemory& ini, const fs::path& folder, DriveConfig& config) {
   OptionList map;
   map.add("resolution", config.voxelSize, "m", above(0), "edge of a voxel");
   std::string halfLives;
@@ -98,7 +98,7 @@ void readMap(const CConfigFile& ini, const fs::path& folder, DriveConfig& config
   config.insertion.validate();
 }
 
-void readSensors(const CConfigFile& ini, SensorConfig& sensors) {
+void readSensors(const CConfigFileMemory& ini, SensorConfig& sensors) {
   const IniSection section = readOptions(ini, "sensors", OptionList::of(sensors));
   if (!sensors.hasCamera && !sensors.hasLidar) section.fail("camera and lidar are both off");
   sensors.lidar.noise = sensors.camera.noise;
@@ -128,7 +128,7 @@ void setSensor(DriveConfig& config) {
     explore.sensor.range = std::min(explore.sensor.range, config.insertion.maxRange);
 }
 
-void readNavigation(const CConfigFile& ini, const fs::path& folder, DriveConfig& config) {
+void readNavigation(const CConfigFileMemory& ini, const fs::path& folder, DriveConfig& config) {
   OptionList drive;
   drive.add("control_period", config.controlPeriod, "s", above(0), "between commands");
   drive.add("time_limit", config.timeLimit, "s", above(0), "of simulated time");
@@ -163,7 +163,7 @@ semantic_slam::MapperOptions DriveConfig::mapping() const {
 DriveConfig loadDriveConfig(const fs::path& file) {
   DriveConfig config;
   const fs::path folder = file.parent_path();
-  strict_files::readIniFile<CConfigFile>(file, [&](const CConfigFile& ini) {
+  strict_files::readIniFile<CConfigFileMemory>(file, [&](const CConfigFileMemory& ini) {
     readMap(ini, folder, config);
     readSensors(ini, config.sensors);
     readSection(ini, "pose", config.pose);

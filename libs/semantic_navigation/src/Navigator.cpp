@@ -187,7 +187,16 @@ void Navigator::correctState() {
   m_z = T.translation().z();
 }
 
-void Navigator::see(const std::vector<SensorScan>& seen, double seconds) {
+/** A stamp that is far from the last step's is none of this clock, and counts as that step's. */
+double Navigator::withoutLeaps(double seconds) const {
+  constexpr double kLeap = 60;
+  const double expected = seconds - m_leapt;
+  const bool leaps = m_steppedAt && std::abs(expected - *m_steppedAt) > kLeap;
+  return leaps ? *m_steppedAt : expected;
+}
+
+void Navigator::see(const std::vector<SensorScan>& seen, double stamp) {
+  const double seconds = withoutLeaps(stamp);
   m_guidesNext = true;
   if (seen.empty()) return;
   CpuClock clock;
@@ -301,19 +310,22 @@ std::size_t Navigator::numCompressedLeaves() {
   return m_leaves.skipLeaves();
 }
 
-DriveCommand Navigator::step(double seconds) {
+DriveCommand Navigator::step(double clock) {
+  const double seconds = withoutLeaps(clock);
+  m_steppedAt = seconds;
+  m_leapt = clock - seconds;
   if (isInserting() && seconds - m_insertingFrom >= m_options.mappingLatency - kSameTime) finish();
   if (m_guidesNext && mayGuide()) guide(seconds);
-  CpuClock clock;
+  CpuClock time;
   const Movers movers = m_movers.at(seconds);
   ObstaclePoints around = obstacles(m_options.obstacleRadius(), false);
   addStanding(movers, m_state.pose, around);
-  note("obstacles", clock.lap());
+  note("obstacles", time.lap());
   ObstaclePoints room;
   if (!movers.empty()) room = obstacles(kRoom, true);
   const DriveCommand command = m_controller.step(m_state, around, seconds - m_mappedAt, seconds,
                                                  movers, movers.empty() ? nullptr : &room);
-  note("react", clock.lap());
+  note("react", time.lap());
   return command;
 }
 

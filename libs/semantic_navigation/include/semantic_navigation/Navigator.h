@@ -84,7 +84,8 @@ struct RobotState {
  *     }
  *
  * What comes out depends on what goes in alone, not on how long threads take. Calls come from one
- * thread. Seconds are of one clock that goes forward; MRPT's navigator takes mrpt::Clock. */
+ * thread. Seconds are of one clock; where it leaps by more than a minute, in either direction, no
+ * time has passed. MRPT's navigator takes mrpt::Clock. */
 class Navigator {
  public:
   enum class Status {
@@ -141,7 +142,8 @@ class Navigator {
   const semantic_driving::DriveState& state() const { return m_state; }
   /** How high the robot's frame is above the ground, m; none: no ground was seen yet. */
   std::optional<double> frameHeight() const { return m_height.meters(); }
-  /** When the newest scan that the map has was taken, seconds; before all: far in the past. */
+  /** When the newest scan that the map has was taken, seconds without leaps; before all: far in the
+   * past. */
   double mappedAt() const { return m_mappedAt; }
   /** Leaves of the compressed tree, as the planner knows it. Waits as mapper(). */
   std::size_t numCompressedLeaves();
@@ -154,6 +156,7 @@ class Navigator {
 
  private:
   bool isInserting() const { return m_inserting.valid(); }
+  double withoutLeaps(double seconds) const;
   semantic_slam::Mapper& waitedFor() const;
   void insert(const std::vector<semantic_slam::SensorScan>& seen, double seconds);
   std::vector<semantic_slam::SensorScan> withoutPassing(
@@ -196,8 +199,10 @@ class Navigator {
   semantic_planning::FrameHeight m_fillsHeight;  ///< of the thread that fills the map
   bool m_guidesNext = false;                     ///< as soon as the map has what was seen
   bool m_restsFirst = false;                     ///< before it looks for a way to a new goal
-  double m_mappedAt;                             ///< seconds
-  double m_insertingFrom = 0;                    ///< when the scan that is being inserted was taken
+  std::optional<double> m_steppedAt;             ///< seconds without leaps, as all that follow
+  double m_leapt = 0;                            ///< seconds by which the clock did
+  double m_mappedAt;
+  double m_insertingFrom = 0;                 ///< when the scan that is being inserted was taken
   semantic_driving::ObstaclePoints m_before;  ///< known without that one, and the robot's pose then
   semantic_driving::ObstaclePoints m_roomBefore;
   mrpt::math::TPose2D m_beforeAt;

@@ -91,17 +91,14 @@ void checkSections(const Source& source, const std::vector<std::string>& known) 
 }
 
 /** Reads an .ini file: \p read is called with it, as an Ini.
- * \tparam Ini mrpt::config::CConfigFile
- * \throw std::runtime_error naming the file: it cannot be read, or what \p read throws. */
+ * \tparam Ini mrpt::config::CConfigFileMemory: a file of a name that cannot be opened is empty to
+ * MRPT \throw std::runtime_error naming the file: it cannot be read, or what \p read throws. */
 template <class Ini, class Read>
 void readIniFile(const std::filesystem::path& file, const Read& read) {
-  if (!std::filesystem::is_regular_file(file) || !std::ifstream(file))
-    throw std::runtime_error(file.string() + ": cannot be read");
+  const std::string text = readText(file);
   try {
-    checkIniText(readText(file));
-    Ini ini(file.string());
-    ini.discardSavingChanges();
-    read(ini);
+    checkIniText(text);
+    read(Ini(text));
   } catch (const std::exception& e) {
     throw std::runtime_error(file.string() + ": " + messageOf(e));
   }
