@@ -6,6 +6,7 @@
 #include <semantic_octree/store/TreeComparison.h>
 
 #include <algorithm>
+#include <deque>
 #include <stdexcept>
 #include <string>
 
@@ -163,7 +164,7 @@ struct KeyframeMap::Content {
   SemanticOcTree& map;
   ScanStorage storage;
   std::vector<Keyframe> keyframes;
-  std::vector<StoredScan> scans;  ///< in the order of their insertion
+  std::deque<StoredScan> scans;  ///< in the order of their insertion
   std::unique_ptr<Scan> buffers;
 };
 
@@ -294,18 +295,22 @@ InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
   if (m->keyframes.empty() || m->keyframes.back().isRemoved)
     throw std::logic_error("keyframes: a scan is inserted before a keyframe has begun");
   const KeyframeId id = m->keyframes.size() - 1;
-  m->scans.reserve(m->scans.size() + 1);
   Content::StoredScan stored{id, T_keyframe_sensor, options, time, {}, {}};
   InsertionReport report;
   m->inBuffers([&](Scan& scan) {
     m->trace(stored, cloud, m->keyframes[id].T_map_keyframe, scan);
     stored.cloud = m->storage.keep(packCloud(cloud));
     stored.voxels = m->keep(packed(scan));
-    MapAccess::ageUntil(m->map, time);
-    MapAccess::merge(m->map, scan, options.threads);
+    m->scans.push_back(std::move(stored));
+    try {
+      MapAccess::ageUntil(m->map, time);
+      MapAccess::merge(m->map, scan, options.threads);
+    } catch (...) {
+      m->scans.pop_back();
+      throw;
+    }
     report = scan.report();
   });
-  m->scans.push_back(std::move(stored));
   return report;
 }
 
