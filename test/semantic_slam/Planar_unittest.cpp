@@ -126,11 +126,13 @@ TEST(Planar, whatTwoPlacesFitIsTold) {
   EXPECT_TRUE(report.warnings().empty());
   report.open = 3;
   report.twofold = 2;
+  report.apart = 0.44;
   report.unheld = 31.2;
-  ASSERT_EQ(report.warnings().size(), 3u);
+  ASSERT_EQ(report.warnings().size(), 4u);
   EXPECT_TRUE(contains(report.warnings()[0], "in either of two places, by 3 of its looks"));
   EXPECT_TRUE(contains(report.warnings()[1], "by 2 looks, two places fit what was seen after"));
-  EXPECT_TRUE(contains(report.warnings()[2], "31 m of the way had no hold along corridors"));
+  EXPECT_TRUE(contains(report.warnings()[2], "are drawn up to 0.4 m beside themselves"));
+  EXPECT_TRUE(contains(report.warnings()[3], "31 m of the way had no hold along corridors"));
 }
 
 TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {

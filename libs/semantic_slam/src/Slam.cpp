@@ -83,6 +83,9 @@ std::vector<std::string> SlamReport::warnings() const {
     warnings.push_back("by " + std::to_string(twofold) +
                        " looks, two places fit what was seen after scans that fit nothing: it was "
                        "put in neither, and may be drawn twice");
+  if (apart > 0)
+    warnings.push_back("places that were seen twice are drawn up to " + tenths(apart) +
+                       " m beside themselves: the map is wrong there");
   if (unheld > kLeastWay)
     warnings.push_back(std::to_string(std::lround(unheld)) +
                        " m of the way had no hold along corridors or walls: " +

@@ -2,6 +2,8 @@
 #include <semantic_slam/Slam.h>
 #include <strict_files/OutputFiles.h>
 
+#include <functional>
+
 #include "MotionNoise.h"
 #include "PlaneSearch.h"
 #include "Reference.h"
@@ -156,8 +158,27 @@ class SlamEngine {
 
   // --- Loops and the reference ---
   bool closeLoops();
-  /** Keyframes of before that the newest may be near, one of each visit; the nearest first. */
-  std::vector<std::size_t> placesWithin(const std::vector<double>& ways) const;
+  /** Keyframes of before a keyframe that it may be near, one of each visit; the nearest first.
+   * \param farthest from each, m */
+  std::vector<std::size_t> placesOf(std::size_t keyframe,
+                                    const std::function<double(std::size_t)>& farthest) const;
+  /** Where a stretch fits best. */
+  struct Look {
+    Pose T_map;         ///< of the keyframe whose frame the stretch is in
+    double off, score;  ///< m from where the poses have it; share of the highest
+    bool isAlone;
+    std::size_t first, last;  ///< keyframes that it was compared with
+  };
+  std::optional<Look> lookAround(std::size_t place, std::size_t keyframe, const Seen& stretch,
+                                 const PlaneSearch::Window& window) const;
+  std::optional<PoseEdge> edgeOf(const Look& look, const Seen& stretch, std::size_t keyframe) const;
+  /** At the end, where nothing leads from a place to one of before beside it: drift that hid it
+   * from the robot is gone with other loops. \return whether poses moved */
+  bool closeLeftLoops();
+  /** Whether a loop leads from beside one to beside the other. */
+  bool isClosed(std::size_t place, std::size_t keyframe) const;
+  /** What two looks at least contradict the poses by, m; 0: next to nothing. */
+  double apartBy(const std::vector<PoseEdge>& looks) const;
   /** Searches the newest keyframe's stretch around a place. */
   std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch, double way);
   /** Registers a keyframe's stretch to what some keyframes saw, nearest to a guess.

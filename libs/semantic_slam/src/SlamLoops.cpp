@@ -23,6 +23,9 @@ constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngl
 /** Without registration the robot may be off as after so many times the way more. */
 constexpr double kLostMore = 9;
 constexpr std::size_t kMostPlaces = 3;
+/** Window in which a loop that is left is searched at the end, and how far off what it finds has to
+ * be that the map is said to be wrong; cells of the grid. */
+constexpr double kLeftWindow = 20, kApart = 3;
 /** Share of the highest score where poses are right already, by the first window; and where they
  * would move, of what the stretch has in itself: people and noise fit nowhere. What goes on into a
  * corridor that nobody saw fits wrong places up to .75 of that. */
@@ -80,16 +83,16 @@ std::vector<double> SlamEngine::waysFromNewest() const {
   return ways;
 }
 
-std::vector<std::size_t> SlamEngine::placesWithin(const std::vector<double>& ways) const {
-  const double way = m_keyframes.back().way;
-  const auto distance = [this](std::size_t k) {
-    return (m_poses[k].translation() - m_poses.back().translation()).norm();
+std::vector<std::size_t> SlamEngine::placesOf(
+    std::size_t keyframe, const std::function<double(std::size_t)>& farthest) const {
+  const double way = m_keyframes[keyframe].way;
+  const auto distance = [&](std::size_t k) {
+    return (m_poses[k].translation() - m_poses[keyframe].translation()).norm();
   };
   std::vector<std::size_t> places;
   std::size_t previous = 0;
-  for (std::size_t k = 0; k < m_keyframes.size() && way - m_keyframes[k].way >= m_scale.loopLength;
-       ++k) {
-    if (distance(k) > 1.4 * windowAfter(ways[k]).radius) continue;
+  for (std::size_t k = 0; k < keyframe && way - m_keyframes[k].way >= m_scale.loopLength; ++k) {
+    if (distance(k) > farthest(k)) continue;
     if (places.empty() || k - previous > keyframesBeside())
       places.push_back(k);
     else if (distance(k) < distance(places.back()))
@@ -108,7 +111,8 @@ bool SlamEngine::closeLoops() {
   if (way < m_lastLook + kLookEvery * m_scale.keyframeDistance) return false;
   m_lastLook = way;
   const auto ways = waysFromNewest();
-  const auto places = placesWithin(ways);
+  const auto places =
+      placesOf(newest, [&](std::size_t k) { return 1.4 * windowAfter(ways[k]).radius; });
   if (places.empty()) return false;
   const Seen stretch = pointsOf(newest - std::min(newest, keyframesBeside()), newest, newest);
   bool moved = false;
@@ -143,51 +147,110 @@ PlaneSearch::Window SlamEngine::windowAfter(double way) const {
           std::min(kAngle + kAngleDrift * way, kLargestAngle)};
 }
 
-std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way) {
-  const std::size_t newest = m_keyframes.size() - 1;
-  const double wayNow = m_keyframes[newest].way;
-  const Pose T_guess = m_poses[place].inverse() * m_poses[newest];
+auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen& stretch,
+                            const PlaneSearch::Window& window) const -> std::optional<Look> {
+  const double wayNow = m_keyframes[keyframe].way;
+  const Pose T_guess = m_poses[place].inverse() * m_poses[keyframe];
   // Seen from above, height and tilt aside.
   const Eigen::Vector3d guess = flatOf(T_guess);
   const Pose T_turn(Eigen::AngleAxisd(guess[2], Eigen::Vector3d::UnitZ()));
   Seen level = stretch;
   const Eigen::Matrix3f T_level = (T_turn.linear().transpose() * T_guess.linear()).cast<float>();
   for (Eigen::Vector3f& p : level.cloud.points) p = T_level * p;
+  // Wherever the robot is in the window, all that it sees was seen from these keyframes.
+  const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
+                                              window.radius / m_scale.keyframeDistance);
+  const std::size_t end = m_piece && place < *m_piece ? std::min(*m_piece, keyframe) : keyframe;
+  const std::size_t first = place - std::min(place, reach);
+  std::size_t last = place;
+  while (last < place + reach && last + 1 < end &&
+         wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
+    ++last;
+  const auto found =
+      PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
+          .find(upright(level.cloud), guess, window, kLeastScore, kLiveLooks / kMostPlaces);
+  if (!found) return std::nullopt;
+  Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
+  T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
+  return Look{m_poses[place] * T_found,
+              (found->pose - guess).head<2>().norm(),
+              found->score,
+              found->isAlone,
+              first,
+              last};
+}
 
-  std::size_t first = 0, last = 0;
-  const auto lookWithin = [&](const PlaneSearch::Window& window) {
-    // Wherever the robot is in the window, all that it sees was seen from these keyframes.
-    const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
-                                                window.radius / m_scale.keyframeDistance);
-    const std::size_t end = m_piece && place < *m_piece ? *m_piece : newest;
-    first = place - std::min(place, reach);
-    last = place;
-    while (last < place + reach && last + 1 < end &&
-           wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
-      ++last;
-    return PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
-        .find(upright(level.cloud), guess, window, kLeastScore, kLiveLooks / kMostPlaces);
-  };
+std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way) {
+  const std::size_t newest = m_keyframes.size() - 1;
+  const double wayNow = m_keyframes[newest].way;
   const PlaneSearch::Window whole = windowAfter(way);
   const double near = kNearWindow * m_scale.gridCell;
-  auto found = lookWithin({std::min(whole.radius, near), whole.angle});
+  auto found = lookAround(place, newest, stretch, {std::min(whole.radius, near), whole.angle});
   if (!found && whole.radius > near &&
       (wayNow == m_lastWholeLook || wayNow > m_lastWholeLook + kLookShare * whole.radius)) {
     m_lastWholeLook = wayNow;
-    found = lookWithin(whole);
+    found = lookAround(place, newest, stretch, whole);
   }
   if (!found) return std::nullopt;
-  const double off = (found->pose - guess).head<2>().norm();
-  if (off > kWindow * m_scale.gridCell && found->score < kMovingScore * ownScore())
+  if (found->off > kWindow * m_scale.gridCell && found->score < kMovingScore * ownScore())
     return std::nullopt;
   if (!found->isAlone) {
     m_report.open += way > m_scale.loopLength;  // no loop leads there yet
     return std::nullopt;
   }
-  Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
-  T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
-  return edgeNear(m_poses[place] * T_found, first, last, keyframesBeside(), stretch, newest,
+  return edgeOf(*found, stretch, newest);
+}
+
+std::optional<PoseEdge> SlamEngine::edgeOf(const Look& look, const Seen& stretch,
+                                           std::size_t keyframe) const {
+  return edgeNear(look.T_map, look.first, look.last, keyframesBeside(), stretch, keyframe,
                   m_scale.leastMatched);
+}
+
+bool SlamEngine::closeLeftLoops() {
+  const PlaneSearch::Window window{kLeftWindow * m_scale.gridCell, kAngle};
+  const auto isNear = [&](std::size_t) { return 1.4 * window.radius; };
+  std::vector<PoseEdge> looks;
+  bool moved = false;
+  m_pendingLoops.clear();
+  m_lastLook = 0;
+  for (std::size_t k = 0; k < m_keyframes.size(); ++k) {
+    if (m_keyframes[k].way < m_lastLook + kLookEvery * m_scale.keyframeDistance) continue;
+    m_lastLook = m_keyframes[k].way;
+    for (const std::size_t place : placesOf(k, isNear)) {
+      if (isClosed(place, k)) continue;
+      const Seen stretch = pointsOf(k - std::min(k, keyframesBeside() / 2),
+                                    std::min(k + keyframesBeside() / 2, m_keyframes.size() - 1), k);
+      const auto look = lookAround(place, k, stretch, window);
+      const auto edge = look ? edgeOf(*look, stretch, k) : std::nullopt;
+      if (!edge) continue;
+      looks.push_back(*edge);
+      const std::size_t before = m_edges.size();
+      moved |= confirm(m_pendingLoops, *edge);
+      m_report.loops += m_edges.size() - before;
+    }
+  }
+  m_report.apart = apartBy(looks);
+  return moved;
+}
+
+bool SlamEngine::isClosed(std::size_t place, std::size_t keyframe) const {
+  const auto areBeside = [this](std::size_t a, std::size_t b) {
+    return std::max(a, b) - std::min(a, b) <= keyframesBeside();
+  };
+  return std::any_of(m_edges.begin(), m_edges.end(), [&](const PoseEdge& e) {
+    return e.isDoubtful && areBeside(e.a, place) && areBeside(e.b, keyframe);
+  });
+}
+
+double SlamEngine::apartBy(const std::vector<PoseEdge>& looks) const {
+  double most = 0, second = 0;  // one alone may be wrong
+  for (const PoseEdge& look : looks) {
+    const double off = (T_map_b(look).inverse() * m_poses[look.b]).translation().norm();
+    second = std::max(second, std::min(off, most));
+    most = std::max(most, off);
+  }
+  return second > kApart * m_scale.gridCell ? second : 0;
 }
 
 std::optional<PoseEdge> SlamEngine::edgeNear(const Pose& T_map_guess, std::size_t first,
@@ -275,10 +338,11 @@ void SlamEngine::optimizePoses() {
 }
 
 bool SlamEngine::finish() {
-  const bool mended = mendPieces(true);
-  if (m_isOptimized) return mended;
-  optimizePoses();
-  return true;
+  bool moved = mendPieces(true) || !m_isOptimized;
+  if (!m_isOptimized) optimizePoses();
+  moved |= closeLeftLoops() || !m_isOptimized;
+  if (!m_isOptimized) optimizePoses();
+  return moved;
 }
 
 std::optional<Registration> SlamEngine::findInReference(const Seen& seen, const Pose& T_map_guess) {

@@ -45,6 +45,7 @@ struct SlamReport {
   std::size_t referenced = 0;  ///< keyframes that were found in the reference
   double way = 0;              ///< m
   double unheld = 0;           ///< of it, where scans did not hold the robot in each direction
+  double apart = 0;     ///< m by which looks at places of before contradict the poses, at most
   double carried = 0;   ///< m, at most, from where odometry had the robot to where it was found
   double standing = 0;  ///< m that scans moved at most while odometry stood still as if off
   /** By how much odometry says more than the scans: of the way (0.1: 10 % too far), and of turns.
