@@ -18,9 +18,6 @@ constexpr std::uint64_t kBeside = 3;
  * tell most are left out, and no other one counts more than so many times what all do. */
 constexpr std::size_t kPairsLeftOut = 3;
 constexpr double kMostOfPair = 5;
-/** Pairs without edges in all scans, before any are seen: of few classes, all lie beside each
- * other. */
-constexpr double kPairsBefore = 3;
 constexpr int kHalvingsOfShare = 12;
 
 /** A voxel whose labels, but at most one, are the same. */
@@ -107,14 +104,12 @@ double alwaysWrong(const PlacedLabels& voxels,
   // not, scans err voxel by voxel, and no edge in all scans is that of a wrong place.
   const double patches = all.alike > 0 ? std::min(1.0, 2 * all.alike / (all.once + all.alike)) : 0;
   for (auto& [classes, seen] : edges) seen.always *= patches;
-  const double ofPair = edges.empty() ? 0 : all.once / static_cast<double>(edges.size());
-  return shareWithoutGain(kHalvingsOfShare, [&edges, ofPair](double share) {
+  return shareWithoutGain(kHalvingsOfShare, [&edges](double share) {
     std::vector<double> gains(kPairsLeftOut);
     for (const auto& [classes, seen] : edges)
       gains.push_back(std::min(seen.always, kMostOfPair * share * seen.once) - share * seen.once);
     std::sort(gains.begin(), gains.end());
-    return std::accumulate(gains.begin(), gains.end() - kPairsLeftOut,
-                           -share * kPairsBefore * ofPair);
+    return std::accumulate(gains.begin(), gains.end() - kPairsLeftOut, 0.0);
   });
 }
 

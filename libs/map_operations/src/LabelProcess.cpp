@@ -12,6 +12,9 @@ constexpr double kTriplesBefore = 100;
 /** Rounds of the search. Of two classes, one of which is taken for the other in every second case,
  * the rare one loses what it has of the frequent one slowly. */
 constexpr int kExpectations = 25, kExpectationsFromRight = 100;
+/** Rounds in which shares of classes are told from what places look like. More of them take all of
+ * a rare class for places of a frequent one. */
+constexpr int kExpectationsOfLooks = 5;
 /** Where the search for the correlation begins, and how far it goes. */
 constexpr double kCorrelationBefore = 0.1, kMostCorrelation = 0.9, kFirstStride = 1,
                  kNextStride = 0.85;
@@ -111,7 +114,7 @@ void LabelProcess::setAlwaysWrong(double always) {
   std::vector<double> seen = m_shares, is = m_shares;
   normalize(seen);
   m_given.assign(K, std::vector<double>(K));
-  for (int round = 0; round < kExpectations; ++round) {
+  for (int round = 0; round < kExpectationsOfLooks; ++round) {
     for (std::size_t look = 0; look < K; ++look) {
       for (std::size_t k = 0; k < K; ++k) m_given[look][k] = is[k] * looks[k][look];
       normalize(m_given[look]);
