@@ -296,6 +296,20 @@ TEST(BeamInformation, throughTheFilterEndsAtItsLimits) {
   EXPECT_LT(question.fallThrough(filter, model, lowest), 1e-6);
 }
 
+TEST(BeamInformation, ofWhatIsToBeIgnoredIsNoGainAtTheFiltersLimits) {
+  const int K = 3;
+  const FilterParameters parameters;
+  const ClassFilter<float> filter(K, parameters);
+  const BeamModel model(K, parameters);
+  const Question question(weightsOf({tree_abstraction::irrelevant("b", 1, {1})}), K);
+  for (const ClassId id : {1, 2}) {
+    auto belief = filter.uniform(0);
+    for (int hits = 0; hits < 4; ++hits) filter.hit(belief, id);
+    for (int misses = 0; misses < 8; ++misses, filter.miss(belief))
+      EXPECT_LE(question.fallThrough(filter, model, belief), 0) << id << ", " << misses;
+  }
+}
+
 TEST(BeamInformation, isTheMeanSurpriseOfAllOutcomes) {
   Draw draw(7);
   for (int trial = 0; trial < 200; ++trial) {

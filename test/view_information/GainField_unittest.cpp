@@ -216,6 +216,20 @@ TEST(GainField, sweepSeesFlatGroundBehindTheGroundThatIsKnown) {
   EXPECT_GT(promise, degrees / 2 * 72);
 }
 
+TEST(GainField, airThatWasSeenOnceIsNoDenserForBeams) {
+  const auto toldBehind = [](int looks) {
+    Scene s;
+    for (int i = 0; i < looks; ++i) insertFloor(s.map, kRoad, 5);
+    s.field.update();
+    FlatGround ground(keyAt(s.map, 0, 0, -0.05)[2]);
+    const ViewTemplate ring({10, -9, -9, 360, 1, 36}, kVoxel);
+    return gainOfHeading(s.field.sweep(ring, ground, keyAt(s.map, 0, 0, 0.85)), 0, 360);
+  };
+  const double often = toldBehind(12);
+  EXPECT_GT(often, 18);
+  EXPECT_NEAR(toldBehind(1), often, 0.05 * often);
+}
+
 TEST(GainField, knowsAsMuchAsTheOccupiedVoxelsTell) {
   Scene s;
   EXPECT_EQ(s.field.known(), 0);

@@ -339,8 +339,9 @@ std::string RelevantViews::conclusion() const {
   std::snprintf(
       text, sizeof text,
       "what is left within reach promises %.1f nat; the last %.0f m promised %.1f nat and "
-      "brought %.1f: %.0f %% of the relevant information is known; the best look that is left is "
-      "expected to add %.1f to %.1f nat to the compressed tree's objective; places looked from: "
+      "brought %.1f: %.0f %% of the relevant information within reach is known; the best look that "
+      "is left is expected to add %.1f to %.1f nat to the compressed tree's objective; places "
+      "looked from: "
       "%zu",
       m_left, last.meters, last.promised, last.known, 100 * (1 - shareLeft()), tree.lower,
       tree.upper, m_done.size());

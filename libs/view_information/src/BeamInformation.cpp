@@ -138,23 +138,24 @@ Question::Question(const tree_abstraction::AbstractionWeights& weights, int numC
     m_kinds[k] = first.emplace(m_entries[k], static_cast<int>(k)).first->second;
 }
 
-/** Weighted sum over the terms' outcomes. \param of, ofRest (entry of a row): of the outcome that
- * it has, and of the rest of a term that has one entry only */
+/** Weighted sums over the terms' outcomes: lower of what is to be ignored, upper of what is
+ * relevant. \param of, ofRest (entry of a row): of the outcome that it has, and of the rest of a
+ * term that has one entry only */
 template <class Of, class OfRest>
-double Question::sumOverTerms(Of of, OfRest ofRest) const {
-  double sum = 0;
+Bounds Question::sumsOverTerms(Of of, OfRest ofRest) const {
+  Bounds sums;
   for (std::size_t t = 0; t < m_terms.size(); ++t) {
     const auto slot = m_terms.slot(t);
     double ofTerm = slot.isBinary() ? ofRest(slot.offset) : 0;
     for (std::size_t e = slot.offset; e < slot.offset + slot.width; ++e) ofTerm += of(e);
-    sum += m_weights[t] * ofTerm;
+    (m_weights[t] < 0 ? sums.lower : sums.upper) += m_weights[t] * ofTerm;
   }
-  return sum;
+  return sums;
 }
 
-double Question::entropyOfRow(const std::vector<double>& row) const {
-  return -sumOverTerms([&](std::size_t e) { return xLogX(row[e]); },
-                       [&](std::size_t e) { return xLogX(1 - row[e]); });
+Bounds Question::entropiesOfRow(const std::vector<double>& row) const {
+  return sumsOverTerms([&](std::size_t e) { return -xLogX(row[e]); },
+                       [&](std::size_t e) { return -xLogX(1 - row[e]); });
 }
 
 std::vector<double> Question::rowOf(const double* p) const {
@@ -163,13 +164,17 @@ std::vector<double> Question::rowOf(const double* p) const {
   return row;
 }
 
-double Question::entropy(const double* p) const { return entropyOfRow(rowOf(p)); }
+double Question::entropy(const double* p) const {
+  const Bounds h = entropiesOfRow(rowOf(p));
+  return h.lower + h.upper;
+}
 
 double Question::divergence(const double* p, const double* q) const {
   const std::vector<double> now = rowOf(p), before = rowOf(q);
   const auto part = [](double a, double b) { return a > 0 && b > 0 ? a * std::log(a / b) : 0.0; };
-  return sumOverTerms([&](std::size_t e) { return part(now[e], before[e]); },
-                      [&](std::size_t e) { return part(1 - now[e], 1 - before[e]); });
+  const Bounds sums = sumsOverTerms([&](std::size_t e) { return part(now[e], before[e]); },
+                                    [&](std::size_t e) { return part(1 - now[e], 1 - before[e]); });
+  return sums.lower + sums.upper;
 }
 
 Bounds Question::distance(const double* p, const double* q, const double* mean) const {
@@ -192,13 +197,18 @@ double Question::surprise(const BeamModel& model, const double* p, int outcome) 
 }
 
 double Question::entropy(const ClassBelief<float>& belief) const {
+  const Bounds h = entropies(belief);
+  return h.lower + h.upper;
+}
+
+Bounds Question::entropies(const ClassBelief<float>& belief) const {
   const auto p = belief.probabilities(numClasses());
   std::vector<double> row(m_sizes);
   for (double& entry : row) entry *= p.rest;
   for (const std::size_t e : m_entries[0]) row[e] += p.free;
   for (int i = 0; i < belief.count; ++i)
     for (const std::size_t e : m_entries[belief.ids[i]]) row[e] += p.named[i] - p.rest;
-  return entropyOfRow(row);
+  return entropiesOfRow(row);
 }
 
 double Question::information(const BeamModel& model, const double* p) const {
@@ -216,22 +226,26 @@ double Question::fallThrough(const ClassFilter<float>& filter, const BeamModel& 
   belief.distribution(numClasses(), p.data());
   auto after = belief;
   filter.miss(after);
-  double left = model.pass(p.data()) * entropy(after);
-  std::map<int, double> known;  // entropy after a label of a class that the belief does not name
+  Bounds fall = entropies(belief);
+  const auto take = [&](double probability, const Bounds& left) {
+    fall.lower -= probability * left.lower, fall.upper -= probability * left.upper;
+  };
+  take(model.pass(p.data()), entropies(after));
+  std::map<int, Bounds> known;  // entropy after a label of a class that the belief does not name
   for (int k = 1; k <= numClasses(); ++k) {
     const auto entropyAfterHit = [&] {
       auto hit = belief;
       filter.hit(hit, static_cast<ClassId>(k));
-      return entropy(hit);
+      return entropies(hit);
     };
     const int kind = m_kinds[static_cast<std::size_t>(k)];
     const bool isNamed = belief.indexOf(static_cast<ClassId>(k)) >= 0;
     const auto found = isNamed ? known.end() : known.find(kind);
-    const double h = found != known.end() ? found->second : entropyAfterHit();
+    const Bounds h = found != known.end() ? found->second : entropyAfterHit();
     if (!isNamed) known.emplace(kind, h);
-    left += model.probability(k, p.data()) * h;
+    take(model.probability(k, p.data()), h);
   }
-  return entropy(belief) - left;
+  return fall.upper + std::min(0.0, fall.lower);
 }
 
 }  // namespace view_information

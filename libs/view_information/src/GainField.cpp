@@ -84,12 +84,11 @@ class GainField::Surroundings {
   Gain at(int x, int y, int z) {
     const Voxel& v = stored(x, y, z);
     if (v.pass == kUnknown) return unknown(x, y, z);
-    Gain gain = unpacked(v);
-    if (m_knowsAir && v.pass > kFree) gain.gain = 0;
-    return gain;
+    return m_knowsAir && isAir(v) ? Gain{} : unpacked(v);
   }
 
  private:
+  static bool isAir(const Voxel& v) { return v.pass != kUnknown && v.pass > kFree; }
   const Voxel& stored(int x, int y, int z) {
     const int column = ((x >> 2) - 2 * m_low[0]) * m_size[1] + (y >> 3) - m_low[1];
     View& half = m_halves[static_cast<std::size_t>(column * m_size[2] + (z >> 3) - m_low[2])];
@@ -101,9 +100,7 @@ class GainField::Surroundings {
     const UnknownPatch*& patch = m_patches[static_cast<std::size_t>(px * 2 * m_size[1] + py)];
     if (!patch) patch = &m_prior.patch(x >> 2, y >> 2);
     if (z >= patch->ground) return patch->at(x, y, z);
-    const Voxel& above = stored(x, y, z + 1);
-    const bool isBelowFree = above.pass != kUnknown && above.pass > kFree;
-    return isBelowFree ? patch->belowFree(x, y, z) : patch->at(x, y, z);
+    return isAir(stored(x, y, z + 1)) ? patch->belowFree(x, y, z) : patch->at(x, y, z);
   }
 
   const GainField& m_field;

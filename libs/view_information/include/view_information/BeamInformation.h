@@ -64,7 +64,7 @@ class Question {
    */
   double surprise(const BeamModel& model, const double* p, int outcome) const;
   /** (d): the expected fall of entropy when the filter gets the outcome, with its limits; below 0
-   * as above. */
+   * as above. At limits the filter forgets: of what is to be ignored that is no gain. */
   double fallThrough(const semantic_octree::ClassFilter<float>& filter, const BeamModel& model,
                      const semantic_octree::ClassBelief<float>& belief) const;
   /** A class of each kind: no term tells classes of one kind apart. \return for each class 1..K the
@@ -73,9 +73,10 @@ class Question {
 
  private:
   std::vector<double> rowOf(const double* p) const;
-  double entropyOfRow(const std::vector<double>& row) const;
+  Bounds entropies(const semantic_octree::ClassBelief<float>& belief) const;
+  Bounds entropiesOfRow(const std::vector<double>& row) const;
   template <class Of, class OfRest>
-  double sumOverTerms(Of of, OfRest ofRest) const;
+  Bounds sumsOverTerms(Of of, OfRest ofRest) const;
 
   std::vector<double> m_weights;
   tree_abstraction::TermSet m_terms;

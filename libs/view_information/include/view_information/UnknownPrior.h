@@ -51,8 +51,8 @@ class UnknownPrior {
   /** The prior of the patch of keys kEdge * x, kEdge * y and on. Valid until what is known changes.
    */
   virtual const UnknownPatch& patch(int x, int y) = 0;
-  /** Whether space that beams passed is air, of which nobody asks a second time. Without, each look
-   * at it is worth what the filter makes of it. */
+  /** Whether space that beams passed is air: nobody asks a second time about it, and beams get
+   * through. Without, each look at it is worth what the filter makes of it. */
   virtual bool knowsAir() const = 0;
 };
 
