@@ -1,9 +1,9 @@
 // Allocations of this program and of all libraries in it: symbols of a program are found before
 // those of libraries. MRPT makes room for as much as a rawlog says it holds before it reads it, and
-// has no other place where it could be stopped. Two rawlogs of test/fuzz/corpus/rawlog/ show it:
-// without what stands here, rawlog2semantic-map ends by a segmentation fault over
-// depth_image_beyond_memory (274 bytes), and takes 17 GB and more than a minute over
-// velodyne_calibration_beyond_memory (217 bytes). With it both are refused within a second.
+// has no other place where it could be stopped. Two rawlogs of test/fuzz/corpus/rawlog/ show it.
+// Without what stands here, rawlog2semantic-map ends by a segmentation fault over
+// depth_image_beyond_memory (274 bytes). Over velodyne_calibration_beyond_memory (217 bytes) it
+// takes 17 GB and more than a minute. With it both are refused within a second.
 #include <strict_files/Memory.h>
 
 #include <cstddef>
@@ -17,9 +17,8 @@ namespace mrpt {
 
 void* aligned_malloc(std::size_t bytes, std::size_t alignment);
 
-/** Replaces MRPT's own: matrices and depth images take it for an allocator and write to what it
- * returns, which there is null if a damaged file asks for more than there is, and zeros for
- * gigabytes if for less.
+/** Replaces MRPT's own, whose matrices and depth images write to whatever it returns. If a damaged
+ * file asks for more than there is, MRPT's returns null; if for less, gigabytes of zeros.
  * \throw std::bad_alloc there is no memory; PieceTooLarge: it is more than any image takes */
 void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
   if (bytes > AllocationLimit::kMost) throw PieceTooLarge();  // 16384 x 16384 distances

@@ -7,8 +7,9 @@
 #include <thread>
 
 /** Waits in a thread of its own for the signals that tell a program to end (SIGINT, SIGTERM,
- * SIGHUP): it leaves, and takes its unfinished outputs along (leaveWithoutOutputs()), or is told by
- * a StopRequest. SIGPIPE and SIGXFSZ are ignored: writing fails, which is an error like others. */
+ * SIGHUP). Then the program leaves and removes its unfinished outputs (leaveWithoutOutputs()), or a
+ * StopRequest tells it. SIGPIPE and SIGXFSZ are ignored: writing fails, which is an error like
+ * others. */
 class SignalWatch {
  public:
   /** \param program Its name, for messages. */
@@ -33,8 +34,8 @@ class StoppedTooEarly : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/** Lets a program stop before its end and keep what it has: while this lives, the first
- * SIGINT or SIGTERM asks for that, and the next one ends the program at once. */
+/** Lets a program stop before its end and keep what it has. While this lives, the first SIGINT or
+ * SIGTERM asks for that; the next one ends the program at once. */
 class StopRequest {
  public:
   /** \param when What the user is told: "after this observation" */

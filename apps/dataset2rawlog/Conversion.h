@@ -115,10 +115,10 @@ std::string sixDigits(std::size_t number);
 /** The folder of the images of a rawlog: X_Images for X.rawlog. */
 std::filesystem::path imagesOf(const std::filesystem::path& rawlog);
 
-/** A sequence in SemanticKITTI's layout: velodyne/, labels/, calib.txt, poses.txt, times.txt.
- * Each scan becomes a CObservationRobotPose (the LiDAR's pose inv(Tr) * P * Tr), with
- * `images` a CObservationImage, whose file of image_2/ is copied into the folder X_Images beside
- * X.rawlog, and a CObservationLabeledCloud.
+/** A sequence in SemanticKITTI's layout: velodyne/, labels/, calib.txt, poses.txt, times.txt. Each
+ * scan becomes a CObservationRobotPose (the LiDAR's pose inv(Tr) * P * Tr) and a
+ * CObservationLabeledCloud. With `images` a CObservationImage comes between, whose file of image_2/
+ * is copied into the folder X_Images beside X.rawlog.
  * \throw std::runtime_error naming file and value of whatever is missing or malformed. */
 Summary convertSemanticKitti(const std::filesystem::path& sequence, const Conversion& conversion);
 
@@ -138,8 +138,8 @@ Summary convertPointFiles(const std::vector<std::filesystem::path>& files,
 
 /** A log of CARMEN: the scans of laser scanners become CObservation2DRangeScan, where the robot's
  * odometry had it CObservationOdometry. Lines of other kinds are left out. Lines of FLASER and
- * RLASER do not say how far beams are from each other: that follows from their number (180 or 181:
- * 1 degree, 360 or 361: 0.5, 400 or 401: 0.25), or from PARAM laser_front_laser_resolution.
+ * RLASER do not say how far beams are from each other. PARAM laser_front_laser_resolution does, or
+ * their number (180 or 181: 1 degree, 360 or 361: 0.5, 400 or 401: 0.25).
  * \throw std::runtime_error naming file and line of whatever is malformed. */
 Summary convertCarmen(const std::filesystem::path& log, const Conversion& conversion);
 
@@ -158,9 +158,9 @@ struct BagChoice {
 /** A bag of ROS 2: .mcap, .db3, or a folder of these. Clouds (sensor_msgs/PointCloud2) become
  * CObservationLabeledCloud, depth images (sensor_msgs/Image with the CameraInfo beside them, and
  * label images) CObservation3DRangeScan, laser scans (sensor_msgs/LaserScan)
- * CObservation2DRangeScan, each behind a CObservationRobotPose. The robot is the frame that moves,
- * from the sensor's upwards; the map's frame is the highest that /tf knows, or that of odometry
- * (nav_msgs/Odometry) where /tf does not tell. Where nothing moves there are no poses.
+ * CObservation2DRangeScan, each behind a CObservationRobotPose. The robot is the first frame that
+ * moves, from the sensor's upwards. The map's frame is the highest that /tf knows. Where /tf does
+ * not tell, odometry (nav_msgs/Odometry) does. Where nothing moves there are no poses.
  * \throw std::runtime_error naming the file, the number of the message and its topic. */
 Summary convertRosbag2(const std::filesystem::path& bag, const BagChoice& choice,
                        const Conversion& conversion);

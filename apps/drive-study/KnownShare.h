@@ -12,7 +12,7 @@
 namespace drive_study {
 
 /** How much of what is looked for a map has right: columns of ground that nothing stands on, and
- * things: one is known if a quarter of its outer columns is, which is one side of it. */
+ * things. A thing is known if a quarter of its outer columns is, which is one side of it. */
 class KnownShare {
  public:
   KnownShare(semantic_octree::SemanticOcTree& map, const synthetic_world::World& world,

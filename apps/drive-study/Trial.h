@@ -31,8 +31,8 @@ struct TaskOptions {
   void validate() const;
 };
 
-/** The map that a robot would have that had seen the whole world from everywhere, without noise:
- * the ground, and what of the things on it is lower than a vehicle.
+/** The map of a robot that has seen the whole world from everywhere, without noise. It has the
+ * ground, and of the things on it what is lower than a vehicle.
  * \param voxelSize meters \param height of the vehicle, meters */
 semantic_octree::SemanticOcTree trueMap(const synthetic_world::World& world, double voxelSize,
                                         double height);

@@ -40,7 +40,8 @@ struct Cli {
     addNumber(app, "--pairs", pairs, strict_files::atLeast(0),
               "Drives in each world, from a random start to a random goal");
     CLI::Option* exploring =
-        app.add_flag("--explore", explore, "Look around from the starts instead, by each strategy");
+        app.add_flag("--explore", explore,
+                     "Instead of driving to goals, explore from the starts, once by each strategy");
     CLI::Option* file =
         app.add_option("--weights", weights, "What is looked for (YAML, see config/weights)");
     exploring->needs(file), file->needs(exploring);

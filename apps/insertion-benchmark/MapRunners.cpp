@@ -96,8 +96,8 @@ Runner ourRunner(const Scene& scene, const Settings& settings) {
   }};
 }
 
-/** The bare work of following all beams: an incremental traversal (Amanatides and Woo) that counts
- * in one byte per voxel of a dense array, in single precision and with the beams' ends known. */
+/** The bare work of following all beams: an incremental traversal (Amanatides and Woo). It counts
+ * in one byte per voxel of a dense array, in single precision, and knows the beams' ends. */
 class DenseTraversal {
  public:
   DenseTraversal(const Scene& scene, const Settings& settings) {

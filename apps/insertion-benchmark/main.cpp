@@ -38,14 +38,16 @@ struct Cli {
     addNumber(app, "--range", settings.maxRange, strict_files::atLeast(0),
               "Maximum range, m; 0: none");
     app.add_option("--scans", scans, "Number of scans; 0: all")->capture_default_str();
-    addChoice(app.add_option("--rays", settings.rays,
-                             "Our rays: all, or one for each end voxel (endpoints)"),
+    addChoice(app.add_option(
+                  "--rays", settings.rays,
+                  "Beams that this project's map casts: all, or one a voxel that beams end in"),
               std::map<std::string, InsertionOptions::Rays>{
                   {"all", InsertionOptions::Rays::All},
                   {"endpoints", InsertionOptions::Rays::EndVoxels}});
     addNumber(app, "--terms", settings.terms, strict_files::between(1, 8),
               "Classes whose information the compressed tree keeps, each with its G-values");
-    addNumber(app, "--threads", settings.threads, strict_files::between(1, 256), "Our threads");
+    addNumber(app, "--threads", settings.threads, strict_files::between(1, 256),
+              "Threads of this project's map");
     addNumber(app, "--repeats", repeats, strict_files::between(1, 1000),
               "Measurements of each runner");
     app.add_option("--only", only,

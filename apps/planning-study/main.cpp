@@ -44,7 +44,7 @@ struct Cli {
     outputs.add(app, output, "FILE", "Table of all searches (CSV)")->required();
     addNumber(app, "--instances", instances, strict_files::above(0), "Pairs of start and goal");
     addNumber(app, "--vertices", vertices, strict_files::above(0),
-              "Vertices of each graph; for halton, draws");
+              "Vertices of each graph; of halton, points drawn, also off the ground");
     addNumber(app, "--min-distance", minDistance, strict_files::above(0), "From start to goal, m");
     app.add_option("--seed", seed, "Seed of the pairs")->capture_default_str();
   }

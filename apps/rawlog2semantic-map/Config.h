@@ -17,9 +17,9 @@ namespace rawlog2semantic_map {
 /** Holds at all times. */
 labeled_cloud::Trajectory restAtOrigin();
 
-/** Poses of a file: in the TUM format (see labeled_cloud::loadTumTrajectory()), or in KITTI's, 3x4
- * matrices [R|t] in rows of twelve numbers, T_map_robot at each of the rawlogs' scans in the order
- * of their times.
+/** Poses of a file in the TUM format (see labeled_cloud::loadTumTrajectory()) or in KITTI's. The
+ * latter has 3x4 matrices [R|t] in rows of twelve numbers: T_map_robot at each of the rawlogs'
+ * scans, in the order of their times.
  * \throw std::runtime_error naming the file, and the line: it is neither, or has another number of
  * poses than there are scans. */
 labeled_cloud::Trajectory loadTrajectory(const std::filesystem::path& file,
@@ -39,8 +39,8 @@ struct Config {
 };
 
 /** Reads the file; `map.classes` is then relative to the working directory, not to the file.
- * \throw std::runtime_error naming the file, and section, key and value where they are to blame:
- * unreadable, an unknown section or key, a value that cannot be read or is out of range. */
+ * \throw std::runtime_error naming the file, and section, key and value where they are to blame.
+ * Causes: unreadable, an unknown section or key, a value that cannot be read or is out of range. */
 Config loadConfig(const std::filesystem::path& file);
 
 /** Where labels come from, if not from the observations themselves. */

@@ -30,8 +30,8 @@ class ScanLog {
   std::vector<std::string> m_classNames;
 };
 
-/** Pictures that show whether labels and calibration are right: above, the labels over the image;
- * below, the scan's points over the image, in their classes' colors, gray where they have none. */
+/** Pictures that show whether labels and calibration are right. Above are the labels over the
+ * image. Below are the scan's points over the image, in their classes' colors, or gray. */
 class Preview {
  public:
   /** Creates the folder if need be. \throw std::runtime_error naming it, if it cannot be. */

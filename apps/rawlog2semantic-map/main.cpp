@@ -82,8 +82,9 @@ struct Cli {
         "Show the map in a window while it grows, and then until the window is closed");
     addTilesTo(app)->excludes(window);
     app.add_flag("--pause", pause, "Begin paused, before the first scan")->needs(window);
-    app.add_option("INPUT.rawlog", rawlogs,
-                   "Rawlogs, parts of one log in order; of a bag of ROS 2: dataset2rawlog rosbag2")
+    app.add_option(
+           "INPUT.rawlog", rawlogs,
+           "Rawlogs: the parts of one log, in order. dataset2rawlog makes one of a ROS 2 bag")
         ->required();
   }
 
@@ -114,8 +115,10 @@ struct Cli {
     outputs.addOther(app.add_option("--preview", preview,
                                     "Folder for pictures: images with their labels and points")
                          ->type_name("FOLDER"));
-    app.add_option("--preview-every", previewEvery, "With N: make pictures of every N-th scan")
-        ->check(isNumber(strict_files::above(0)));
+    app.add_option("--preview-every", previewEvery,
+                   "Number of scans from one preview to the next")
+        ->check(isNumber(strict_files::above(0)))
+        ->capture_default_str();
   }
 };
 

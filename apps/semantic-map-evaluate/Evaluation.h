@@ -72,9 +72,9 @@ class Evaluation {
   std::vector<Bin> m_ofClass;
 };
 
-/** What maps are held against: the labels in each voxel, counted. With n_k of class k of n, and K
- * classes, p(class k) = (n_k + a/K) / (n + a): the mean of a Dirichlet distribution whose prior
- * counts like a = 0.1 labels. */
+/** What maps are held against: the labels in each voxel, counted. Of n labels n_k are of class k,
+ * one of K classes: p(class k) = (n_k + a/K) / (n + a). That is the mean of a Dirichlet
+ * distribution whose prior counts like a = 0.1 labels. */
 class LabelCounts {
  public:
   enum class Counted {

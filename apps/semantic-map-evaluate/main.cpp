@@ -92,8 +92,8 @@ struct Cli {
     app.add_option("--scans", rawlogs, "Rawlogs of labeled scans that the maps were not made from")
         ->required();
     app.add_option("--made-from", madeFrom,
-                   "Rawlogs that the maps were made from: two more rows say how good plain counts "
-                   "of their labels in each voxel are");
+                   "Rawlogs that the maps were made from: two more rows of results, for plain "
+                   "counts of labels in each voxel");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     app.add_option("--max-range", maxRange, "Leave out points farther from the sensor than this, m")
         ->check(isNumber(strict_files::above(0)));

@@ -31,12 +31,12 @@ struct CostGrid {
   }
 };
 
-/** The ground is the part that hangs together and has the most surfaces; of several levels in one
- * column the lowest counts, and with a floor (m, map frame) the nearest to it that is less than the
- * vehicle's height away. A rank costs from 0 (best) evenly to 90. kInscribed: the vehicle's
- * origin cannot be there, as its inscribed disc would leave the ground, whose forbidden classes do
- * not matter for that. kLethal: ground apart, forbidden classes, and what stands there. kUnknown:
- * the map knows nothing.
+/** The ground is the connected part with the most surfaces. If a column has several levels, the
+ * lowest counts. With a floor (m, map frame) it is the level nearest to that, less than the
+ * vehicle's height away. A rank costs from 0 (best) evenly to 90. kInscribed: the vehicle's origin
+ * cannot be there, as its inscribed disc would leave the ground. Forbidden classes do not matter
+ * for that. kLethal: ground apart, forbidden classes, and what stands there. kUnknown: the map
+ * knows nothing.
  * \throw std::runtime_error the map has no drivable ground, or is too wide
  * \throw std::invalid_argument an order of other classes, or a bad vehicle */
 CostGrid costGridOf(const semantic_octree::SemanticOcTree& map,

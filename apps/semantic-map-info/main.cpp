@@ -208,7 +208,7 @@ struct Cli {
         ->allow_extra_args(false)
         ->each([this](const std::string& text) { points.push_back(pointOf(text)); });
     app.add_option("--query", query,
-                   "What it knows at each line `x y z` of a file, or of - (standard input)")
+                   "What it knows at each point of a file (lines: x y z), or of - (standard input)")
         ->type_name("FILE");
     app.add_flag("--distribution", distribution,
                  "Print the probabilities of all classes at these points, too");

@@ -38,7 +38,7 @@ struct Cli {
         ->required();
     app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
-                 "The sum will be added to others: do not limit its probabilities yet");
+                 "The sum is a part, to be added to others: do not clamp its probabilities yet");
     app.add_option("--box", box,
                    "Add up only what is in this box, m; `inf` and `-inf` are no limit")
         ->type_name("X,Y,Z,X2,Y2,Z2")

@@ -18,9 +18,9 @@ namespace semantic_map_plan {
 void saveScene(const semantic_octree::SemanticOcTree* map,
                const semantic_planning::PlanResult& plan, const std::filesystem::path& file);
 
-/** Draws a plan upon the map from above, with a legend: drivable ground in its classes' colors, its
- * holes, the graph, the path, start and goal as arrows with the footprint, and what refuses them.
- * Light edges are not evaluated, blocked ones are left out. */
+/** Draws a plan upon the map from above, with a legend. It shows drivable ground in its classes'
+ * colors, its holes, the graph and the path. Start and goal are arrows with the footprint, with
+ * what refuses them. Light edges are not evaluated, blocked ones are left out. */
 cv::Mat drawPlan(map_pictures::MapCanvas canvas, const semantic_planning::SemanticPlanner& planner,
                  const semantic_planning::PlanResult& plan, const mrpt::math::TPose2D& start,
                  const mrpt::math::TPose2D& goal);

@@ -154,7 +154,7 @@ struct Cli {
     app.add_option("--alpha", wish.alpha, "The price of detail, instead of the weights' own")
         ->check(isNumber(strict_files::atLeast(0)));
     app.add_option("--bytes", reception.bytes,
-                   "End when this many bytes of the map, from its beginning, are there")
+                   "End after this many bytes of the map: a coarse map, for the rest is detail")
         ->check(isNumber(strict_files::above(0)));
     app.add_option(
         "--key", key,

@@ -112,7 +112,7 @@ std::string Driving::explore(bool isToExplore) {
 }
 
 /** A shape with beams in equal steps, as many as points came, but no more than it takes to meet
- * what is near: it is made once, and swept at each place. */
+ * what is near. It is made once, and swept at each place. */
 void Driving::learnSensor(const semantic_slam::SensorScan& scan) {
   constexpr double kDegrees = 180 / M_PI, kGap = 30, kMostBeams = 8000;
   constexpr std::size_t kSome = 2000;  // points that are looked at

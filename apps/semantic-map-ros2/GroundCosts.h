@@ -12,8 +12,8 @@
 namespace semantic_map_ros2 {
 
 /** What driving over the ground that the robot can reach costs, column by column, as nav2's static
- * layer takes it: a rank's cost, 100 where there is another thing or a forbidden class, -1 where
- * the map knows nothing. Only what changes is computed. */
+ * layer takes it. It is a rank's cost; 100 where there is another thing or a forbidden class; -1
+ * where the map knows nothing. Only what changes is computed. */
 class GroundCosts {
  public:
   static constexpr int kUnknown = -1, kBlocked = 100;

@@ -29,8 +29,9 @@ struct Cli {
              "The map (.semantic), written after Ctrl-C, and when somebody publishes to ~/save")
         ->required();
     app.add_option("--map", map, "Map to go on with; its frame is the frame of all poses");
-    app.add_option("--copy", copy,
-                   "Make no map, but keep a copy of this node's compressed tree: /semantic_map")
+    app.add_option(
+           "--copy", copy,
+           "Instead of mapping, mirror the compressed tree of this node, such as /semantic_map")
         ->type_name("NAME");
     app.add_flag_callback("-v,--verbose", beVerbose, "Tell of each scan");
     app.footer("ROS arguments: --ros-args -r FROM:=TO -p NAME:=VALUE --params-file FILE (YAML)");

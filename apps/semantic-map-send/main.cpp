@@ -127,8 +127,8 @@ struct StationOptions {
 };
 
 /** Serves receivers, several at once, at one rate for all of them. Nothing is kept of who asks
- * until a whole request shows the cookie that was sent to it, and then for kMostAtOnce receivers at
- * most: others ask until there is room. */
+ * until a whole request shows the cookie that was sent to it. Then kMostAtOnce receivers are kept
+ * at most; others ask until there is room. */
 class Station {
  public:
   static constexpr std::size_t kMostAtOnce = 16, kMostOfAddress = 4;

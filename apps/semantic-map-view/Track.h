@@ -23,8 +23,8 @@ struct Track {
 bool isTrack(const std::filesystem::path& file);
 
 /** A trajectory in the format of the TUM data sets (.tum, .txt), or a CSV file with columns x, y
- * and z, in which gear ("forward" or "backward") or the sign of speed says which way it goes: what
- * semantic-map-plan and semantic-map-drive write.
+ * and z. In the latter gear ("forward" or "backward") or the sign of speed says which way it goes.
+ * semantic-map-plan and semantic-map-drive write such files.
  * \throw std::runtime_error naming file, line and value: it cannot be read, or is no such file. */
 Track readTrack(const std::filesystem::path& file);
 

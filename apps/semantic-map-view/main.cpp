@@ -116,8 +116,8 @@ cv::Mat restingPicture(ViewWindow& window) {
 }
 
 /** Once around the map while its compressed tree goes from nearly all leaves to few and back, as a
- * GIF with a scale that holds in the middle of the picture. \throw std::runtime_error naming the
- * file: it cannot be written */
+ * GIF. Its scale holds in the middle of the picture. \throw std::runtime_error naming the file: it
+ * cannot be written */
 void animate(ViewWindow& window, CompressPanel& panel, const std::filesystem::path& file) {
   map_pictures::GifFile gif(file, kPeriod);
   panel.switchOn(true);

@@ -363,7 +363,8 @@ int run(const Cli& cli) {
 }  // namespace synth_rawlog
 
 int main(int argc, char** argv) {
-  CLI::App app("A labeled camera and LiDAR in a synthetic world, written to a rawlog");
+  CLI::App app(
+      "Drives a labeled camera and a LiDAR through a synthetic world, and writes a rawlog");
   synth_rawlog::Cli cli(app);
   return runApplication(app, argc, argv, [&] {
     cli.complete();

@@ -5,16 +5,14 @@
 #include <string>
 
 #include "../semantic_octree/SmallScans.h"
+#include "Classes.h"
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 
 /** Three classes with colors, the last with a name that must be quoted. */
 inline semantic_types::ClassTable coloredClasses() {
-  semantic_types::ClassTable table;
-  table.add("post", {200, 30, 10});
-  table.add("road", {20, 40, 220});
-  table.add("grass, \"wet\"", {10, 190, 40});
-  return table;
+  return tableOf(
+      {{"post", {200, 30, 10}}, {"road", {20, 40, 220}}, {"grass, \"wet\"", {10, 190, 40}}});
 }
 
 /** The small place's map: ground at 0 with posts on it, voxels of 0.2 m. */

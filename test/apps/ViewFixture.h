@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "Classes.h"
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 #include "XServer.h"
@@ -21,10 +22,6 @@ constexpr semantic_types::Color kRoad{90, 90, 200}, kGrass{60, 200, 60}, kWall{2
 /** Voxels of 0.2 m: in the west road, in the east grass, 10 m x 10 m each, around the origin; in
  * the middle of the grass a block of wall, 2 m high. */
 inline SemanticOcTree smallMap() {
-  semantic_types::ClassTable classes;
-  classes.add("road", kRoad);
-  classes.add("grass", kGrass);
-  classes.add("wall", kWall);
   semantic_types::LabeledCloud cloud;
   const auto add = [&](float x, float y, float z, semantic_types::ClassId id) {
     cloud.points.emplace_back(x, y, z - 6);
@@ -36,7 +33,7 @@ inline SemanticOcTree smallMap() {
       add(x, y, 0.1f, wall ? 3 : x < 0 ? 1 : 2);
       for (float z = 0.3f; wall && z < 2; z += 0.2f) add(x, y, z, 3);
     }
-  SemanticOcTree map(0.2, classes);
+  SemanticOcTree map(0.2, tableOf({{"road", kRoad}, {"grass", kGrass}, {"wall", kWall}}));
   Eigen::Isometry3d T_map_sensor(Eigen::Translation3d(0, 0, 6));
   for (int i = 0; i < 3; ++i) map.insert(cloud, T_map_sensor);
   return map;

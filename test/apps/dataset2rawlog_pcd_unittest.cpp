@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <semantic_types/ClassTable.h>
 
+#include "Classes.h"
 #include "ConvertedScans.h"
 #include "RunProgram.h"
 #include "SharedData.h"
@@ -23,8 +24,7 @@ const char* const kPcdHead =
 
 TEST_F(Pcd, pointsComeBackInTheWorldAndTheSensorIsAtTheViewpoint) {
   const auto file = folder.write("a.pcd", std::string(kPcdHead) + "9 5 6 7 3 -1\n9 1 2 3.5 0\n");
-  ClassTable table;
-  for (const char* name : {"a", "b", "c"}) table.add(name, {});
+  const ClassTable table = tableOf({"a", "b", "c"});
   const auto scans =
       convertAndRead("pcd " + quoted(file) + " " + quoted(file), folder / "out.rawlog", table);
   ASSERT_EQ(scans.size(), 2u);
@@ -44,8 +44,7 @@ TEST_F(Pcd, aClassTableFoldsTheLabels) {
 }
 
 TEST_F(Pcd, theLabelsFieldHasAnyName) {
-  ClassTable table;
-  for (const char* name : {"a", "b"}) table.add(name, {});
+  const ClassTable table = tableOf({"a", "b"});
   const auto file =
       folder.write("a.pcd", "FIELDS x y z scalar_Class\nPOINTS 2\nDATA ascii\n1 2 3 2\n4 5 6 1\n");
   const auto scans = convertAndRead("pcd --label-field scalar_Class " + quoted(file),
@@ -72,8 +71,7 @@ TEST_F(Pcd, badInputIsNamed) {
 
 TEST_F(Pcd, realOnesKeepTheirWorldCoordinates) {
   SKIP_WITHOUT_DATA("sim_unstructured");
-  ClassTable table;
-  for (const char* name : {"a", "b", "c"}) table.add(name, {});
+  const ClassTable table = tableOf({"a", "b", "c"});
   const auto file = sharedDataDir() / "sim_unstructured/sim_unstructured_annotated_1.pcd";
   const auto scans = convertAndRead("pcd " + quoted(file), folder / "out.rawlog", table);
   ASSERT_EQ(scans.at(0).scan.counts.labeled, 3394u);

@@ -116,7 +116,9 @@ TEST(UsageErrors, nameTheOptionAndOfferWhatWasMeant) {
             "--resolution is -1, expected a number above 0"},
            {"semantic-map-edit a --output", "--output lacks its value"},
            {"semantic-map-edit a -o b --box 1,2,3", "--box needs 6 values"},
-           {"semantic-map-edit a --box 1,2,3,4,5 -o b", "--box needs 6 values"}}) {
+           {"semantic-map-edit a --box 1,2,3,4,5 -o b", "--box needs 6 values"},
+           {"semantic-map-drive --goal 1,1,0 --order c --config d -o x", "--start is required"},
+           {"rawlog2semantic-map a --config c -o b --pause", "--live"}}) {
     const ProgramRun run = runCommand(MSO_BIN_DIR "/" + command);
     EXPECT_EQ(run.status, 64) << run.output;
     EXPECT_TRUE(contains(run.output, message));
@@ -153,6 +155,12 @@ class UserData : public MapTool {
     for (std::size_t i = 0; i < files.size(); ++i)
       EXPECT_EQ(folder.read(files[i]), before[i]) << files[i];
     EXPECT_EQ(entriesOf(folder.path()), entries) << program;
+  }
+  /** A rawlog of one scan, and config.ini for it. */
+  void writeMapping(const std::string& rawlog) const {
+    folder.write("config.ini", "[map]\nresolution = 0.5\nclasses = classes.yaml\n");
+    folder.write("classes.yaml", kSmallTable);
+    writeSmallRawlog(folder / rawlog, robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
   }
   static std::size_t entriesOf(const fs::path& folder) {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
@@ -226,9 +234,7 @@ TEST_F(UserData, aGridsPictureIsNotReplacedByTheMapsPicture) {
 }
 
 TEST_F(UserData, filesOfAFolderAreNotReplacedEither) {
-  folder.write("config.ini", "[map]\nresolution = 0.5\nclasses = classes.yaml\n");
-  folder.write("classes.yaml", kSmallTable);
-  writeSmallRawlog(folder / "a.rawlog", robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
+  writeMapping("a.rawlog");
   for (const char* name : {"map.semantic", "view.png", "compressed.png"}) {
     const std::string file = std::string("out/") + name;
     folder.write(file, "of before");
@@ -242,12 +248,10 @@ TEST_F(UserData, filesOfAFolderAreNotReplacedEither) {
 }
 
 TEST_F(UserData, otherOutputsAreNotReplacedEither) {
-  folder.write("config.ini", "[map]\nresolution = 0.5\nclasses = classes.yaml\n");
-  folder.write("classes.yaml", kSmallTable);
+  writeMapping("a.rawlog");
   folder.write("labeled.rawlog", "precious");
   folder.write("preview/000000.png", "precious");
   folder.write("p.png", "precious");
-  writeSmallRawlog(folder / "a.rawlog", robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
   const auto mapping = [](const Words& more) {
     return joined({"--config", "config.ini", "-o", "out", "a.rawlog"}, more);
   };
@@ -286,12 +290,10 @@ TEST(Programs, thatWriteNameTheirOutputAlike) {
 }
 
 TEST_F(UserData, namesThatAreNoUtf8DoNotDiscardARun) {
-  folder.write("config.ini", "[map]\nresolution = 0.5\nclasses = classes.yaml\n");
-  folder.write("classes.yaml", kSmallTable);
   const std::string rawlog =
       "Stra\xDF"
       "e.rawlog";
-  writeSmallRawlog(folder / rawlog, robotPose(10, 1), labeledCloud(10, {{1, 0.2f, 0.2f}}, {1}));
+  writeMapping(rawlog);
   succeeded(run("rawlog2semantic-map", {"--config", "config.ini", "-o", "out", rawlog}));
   EXPECT_TRUE(fs::exists(folder / "out/map.semantic"));
   EXPECT_EQ(nlohmann::json::parse(folder.read("out/summary.json"))["rawlogs"][0],

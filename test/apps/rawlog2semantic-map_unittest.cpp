@@ -277,12 +277,6 @@ TEST_F(LiveMapping, IsAnErrorWithoutADisplay) {
   EXPECT_FALSE(fs::exists(folder / "live"));
 }
 
-TEST_F(LiveMapping, IsNeededForAPause) {
-  const ProgramRun run = runProgram("rawlog2semantic-map", joined(arguments("live"), {"--pause"}));
-  EXPECT_EQ(run.status, 64);
-  EXPECT_TRUE(contains(run.errors, "--live"));
-}
-
 /** The LiDAR scans of the shipped sample at their true poses. */
 std::vector<LabeledFrame> readSampleScans() {
   const fs::path sources = MSO_SOURCE_DIR;

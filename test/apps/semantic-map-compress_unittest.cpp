@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "AllAlphas.h"
+#include "Classes.h"
 #include "CsvTable.h"
 #include "SemanticMapCompress.h"
 
@@ -199,10 +200,8 @@ TEST_F(SemanticMapCompress, picturesAndFiguresShowSomething) {
 }
 
 TEST_F(SemanticMapCompress, namesAreNoCommandsForGnuplot) {
-  semantic_types::ClassTable table;
-  for (const char* name :
-       {"post", "road'\"`touch x`", "100 %s", "@x {/Bold y}", "|touch x", "!touch x"})
-    table.add(name, {});
+  const auto table =
+      tableOf({"post", "road'\"`touch x`", "100 %s", "@x {/Bold y}", "|touch x", "!touch x"});
   saveTree(smallMap(table), folder / "a'\n!touch x\n.semantic");
   const fs::path before = fs::current_path();
   fs::current_path(folder.path());

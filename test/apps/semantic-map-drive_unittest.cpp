@@ -98,14 +98,6 @@ TEST_F(SemanticMapDrive, LogsWhatMrptsNavigatorDid) {
   EXPECT_GT(withObstacles, 0);
 }
 
-TEST_F(SemanticMapDrive, SaysWhatIsMissing) {
-  const ProgramRun run =
-      runProgram("semantic-map-drive", {"--order", kConfig + "orders/synthetic.yaml", "--config",
-                                        kConfig + "drives/synthetic.ini", "--output", path("x")});
-  EXPECT_EQ(run.status, 64);
-  EXPECT_TRUE(contains(run.errors, "--start is required"));
-}
-
 TEST_F(SemanticMapDrive, RefusesAGoalOutsideOfTheWorld) {
   const ProgramRun run =
       runProgram("semantic-map-drive", {"--start=-14,-19,10", "--goal=500,-17,20", "--order",

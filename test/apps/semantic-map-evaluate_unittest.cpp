@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "Classes.h"
 #include "Evaluation.h"
 #include "RunProgram.h"
 #include "SmallRawlogs.h"
@@ -17,11 +18,7 @@ using semantic_map_evaluate::LabelCounts;
 
 namespace {
 
-ClassTable roadGrassCar() {
-  ClassTable table;
-  for (const char* name : {"road", "grass", "car"}) table.add(name, {});
-  return table;
-}
+ClassTable roadGrassCar() { return tableOf({"road", "grass", "car"}); }
 
 /** Voxels of 1 m: road at x = 4.5 (seen twice), grass at 6.5, something without a label at 8.5;
  * free before 4, and 0.5 m to the side nothing is known. */

@@ -4,6 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "Classes.h"
 #include "ExportFixture.h"
 
 using semantic_octree::SemanticOcTree;
@@ -14,9 +15,7 @@ namespace {
 /** Ground from -5 to 5 m: road where |y| < 1.5, beyond it grass, and water behind y = 4; a wall of
  * 1 m at x = 3. */
 SemanticOcTree yard() {
-  semantic_types::ClassTable table;
-  for (const char* name : {"road", "grass", "water", "wall"}) table.add(name, {});
-  SemanticOcTree map(0.2, table);
+  SemanticOcTree map(0.2, tableOf({"road", "grass", "water", "wall"}));
   LabeledCloud cloud;
   const auto add = [&cloud](double x, double y, double z, int id) {
     cloud.points.push_back(Eigen::Vector3d(x, y, z - 4).cast<float>());

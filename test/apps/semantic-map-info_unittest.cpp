@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "Classes.h"
 #include "RunProgram.h"
 #include "TemporaryFolder.h"
 
@@ -18,10 +19,7 @@ namespace {
 class SemanticMapInfo : public FolderTest {
  protected:
   void SetUp() override {
-    ClassTable table;
-    table.add("road", {255, 0, 0});
-    table.add("tall grass", {0, 255, 0});
-    SemanticOcTree tree(0.5, table);
+    SemanticOcTree tree(0.5, tableOf({{"road", {255, 0, 0}}, {"tall grass", {0, 255, 0}}}));
     LabeledCloud cloud;
     cloud.points = {{3.5f, 0, 0}};
     cloud.classes = {2};

@@ -3,6 +3,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "Classes.h"
+
 constexpr semantic_types::Color kRoad{200, 30, 30}, kTree{30, 180, 60}, kWall{40, 60, 210};
 
 inline cv::Vec3b pixelOf(const semantic_types::Color& c) { return {c.b, c.g, c.r}; }
@@ -16,11 +18,7 @@ inline int count(const cv::Mat& picture, const semantic_types::Color& c) {
 
 /** road (red), tree (green), wall (blue) */
 inline semantic_types::ClassTable paintedClasses() {
-  semantic_types::ClassTable table;
-  table.add("road", kRoad);
-  table.add("tree", kTree);
-  table.add("wall", kWall);
-  return table;
+  return tableOf({{"road", kRoad}, {"tree", kTree}, {"wall", kWall}});
 }
 
 /** A field of 10 m x 6 m at z = 0.1 m with voxels of 0.2 m: its western half is road, the eastern

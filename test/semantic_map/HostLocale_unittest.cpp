@@ -8,6 +8,7 @@
 
 #include <sstream>
 
+#include "Classes.h"
 #include "CommaHost.h"
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
@@ -17,9 +18,7 @@ using namespace semantic_map;
 namespace {
 
 semantic_octree::SemanticOcTree someTree() {
-  semantic_types::ClassTable classes;
-  classes.add("road", {1, 2, 3});
-  semantic_octree::SemanticOcTree tree(0.125, classes);
+  semantic_octree::SemanticOcTree tree(0.125, tableOf({{"road", {1, 2, 3}}}));
   semantic_types::LabeledCloud cloud;
   for (int i = 0; i < 2000; ++i) cloud.points.emplace_back(4.5f, 0.01f * float(i) - 10, 1.75f);
   cloud.classes.assign(cloud.points.size(), 1);

@@ -6,13 +6,11 @@
 
 #include <string>
 
+#include "Classes.h"
+
 /** road (red), tree (green), wall (blue) */
 inline semantic_types::ClassTable threeClasses() {
-  semantic_types::ClassTable table;
-  table.add("road", {200, 30, 30});
-  table.add("tree", {30, 180, 60});
-  table.add("wall", {40, 60, 210});
-  return table;
+  return tableOf({{"road", {200, 30, 30}}, {"tree", {30, 180, 60}}, {"wall", {40, 60, 210}}});
 }
 
 inline labeled_cloud::CObservationLabeledCloud labeledPoints(

@@ -11,8 +11,8 @@ namespace figures {
 void drawWithGnuplot(const std::string& script, const std::filesystem::path& file);
 
 /** A text as gnuplot's scripts have it: drawn as it is, but for what printable() writes otherwise.
- * gnuplot takes no part of it for a command, a macro or a shell's command: but for letters, digits
- * and spaces, bytes are written as their numbers. */
+ * gnuplot takes no part of it for a command, a macro or a shell's command. Bytes other than
+ * letters, digits and spaces are written as their numbers. */
 std::string gnuplotText(const std::string& text);
 
 /** A solution's color, the same in all figures. */

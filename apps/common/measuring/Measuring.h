@@ -3,8 +3,8 @@
 
 namespace measuring {
 
-/** What a stopwatch counts: time on the wall, or of the processor, so that what else runs on the
- * machine does not count: of this process, or of the thread that asks. */
+/** What a stopwatch counts: time on the wall, or processor time of this process or of the thread
+ * that asks. What else runs on the machine does not count in the latter. */
 enum class TimeOf { Wall, Process, Thread };
 
 /** Measures times that follow each other. */
@@ -25,8 +25,8 @@ class Stopwatch {
   double m_begin;
 };
 
-/** The value that a share of the values lie below: between the two nearest of them in proportion
- * (type 7 of Hyndman, Fan 1996), as R and NumPy have it.
+/** The value that a share of the values lie below. Between two values it is interpolated (type 7 of
+ * Hyndman, Fan 1996), as R and NumPy do.
  * \param values in any order \param share in [0, 1]
  * \throw std::invalid_argument no values, or another share */
 double quantile(std::vector<double> values, double share);

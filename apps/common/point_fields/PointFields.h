@@ -84,8 +84,8 @@ struct RawCloud {
 semantic_types::LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField,
                                      const semantic_types::ClassTable& table, std::string& problem);
 
-/** When each point of cloudOf() was taken, seconds after the message's stamp, by a field "t",
- * "time", "timestamp", "time_stamp", "time_offset" or "offset_time": whole numbers are nanoseconds,
+/** When each point of cloudOf() was taken, seconds after the message's stamp. The field is "t",
+ * "time", "timestamp", "time_stamp", "time_offset" or "offset_time". Whole numbers are nanoseconds,
  * others seconds, since the stamp or since 1970 (then also nanoseconds). Empty: there is no such
  * field, or no reading of it has all points within a second of the stamp. \param stamp seconds
  * since 1970 \throw std::runtime_error as cloudOf() */

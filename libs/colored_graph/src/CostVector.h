@@ -73,8 +73,8 @@ class EdgeCosts {
   EdgeCosts(const ColoredGraph& graph, const CostModel& model)
       : m_graph(graph), m_model(model), m_rankZeroAt(model.tolls ? kLengthAt - 1 : kLengthAt) {}
 
-  /** The cost of an edge that is driven to its end `to`: infinite if that cannot be; of an
-   * unevaluated edge a lower bound, from its end points and least length. */
+  /** The cost of an edge that is driven to its end `to`, infinite if that cannot be. For an
+   * unevaluated edge it is a lower bound, from its end points and least length. */
   Cost operator()(EdgeId e, VertexId to) const {
     const Edge& edge = m_graph.edge(e);
     const Length toll = edge.tollTo(to);

@@ -130,8 +130,8 @@ class ColoredReplanner::Search : public Impl {
     enqueue(m_goal);
   }
 
-  /** D* Lite would leave the keys and raise k_m instead; to recompute the keys of the few queued
-   * vertices asks nothing of the lower bound but that it is consistent from each start. */
+  /** D* Lite would leave the keys and raise k_m instead. Recomputing the keys of the few queued
+   * vertices asks less of the lower bound: it only has to be consistent from each start. */
   void rekey() {
     ++m_startNumber;
     m_queue.rekey([this](VertexId v) { return key(v); });
@@ -240,8 +240,8 @@ class ColoredReplanner::Search : public Impl {
 
   // --- The path
 
-  /** Only after computeShortestPath(): then every vertex on the way is consistent, and g falls
-   * with each step, if only by one edge; unless the lower bound of lengths was no such thing. */
+  /** Only after computeShortestPath(). Then every vertex on the way is consistent, and g falls with
+   * each step, at least by one edge, unless the lower bound of lengths is none. */
   std::vector<EdgeId> bestEdges() const {
     std::vector<EdgeId> edges;
     for (VertexId v = m_start; v != m_goal;) {

@@ -27,8 +27,8 @@ ClassId classNamed(const strict_files::StrictYaml& yaml, const YAML::Node& node,
   yaml.fail(node, "'" + name + "' is no class of the table; `fold` can say which it is");
 }
 
-/** A classifier's classes in its own order, as ids of the table: `classes` is the list of their
- * names, and `fold` says what those are called that the table calls otherwise (or `no_class`).
+/** A classifier's classes in its own order, as ids of the table. `classes` lists their names;
+ * `fold` gives the table's name (or `no_class`) for those that the table calls otherwise.
  * \throw std::runtime_error naming file, line and a name that is not in the table. */
 std::vector<ClassId> namedClasses(const strict_files::StrictYaml& yaml, const ClassTable& table) {
   std::map<std::string, ClassId> folds;

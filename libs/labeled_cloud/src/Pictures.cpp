@@ -80,7 +80,8 @@ int typeOf(const Reading& reading) {
 }
 
 /** Pixels of a PNG file as they are stored: indices of a palette, gray values of 1 to 16 bits
- * (CV_8UC1, CV_16UC1; OpenCV would stretch the narrow ones and lose the indices), or BGR(A) colors.
+ * (CV_8UC1, CV_16UC1), or BGR(A) colors. OpenCV would stretch narrow gray values and lose the
+ * indices.
  * \param path Its size was checked (checkImageFile()).
  * \throw std::runtime_error it is damaged, or has pixels of another kind. */
 cv::Mat readPng(const std::filesystem::path& path) {

@@ -8,8 +8,8 @@
 
 namespace labeled_cloud {
 
-/** Where each pixel of a camera looks, lens distortion taken out: (y, z) at x = 1, x forward, y to
- * the left, z up (MRPT's frame of depth cameras). */
+/** Where each pixel of a camera looks, lens distortion taken out: (y, z) at x = 1. x is forward, y
+ * to the left, z up (MRPT's frame of depth cameras). */
 class PixelRays {
  public:
   /** \throw std::invalid_argument the camera is not calibrated. */
@@ -52,9 +52,9 @@ PointGrid unproject(const mrpt::obs::CObservation3DRangeScan& scan, const PixelR
  * are missing. */
 PointGrid gridOfPoints(const mrpt::obs::CObservation3DRangeScan& scan);
 
-/** Removes points that hang between two surfaces at a depth edge: in a row or a column, strictly
- * between both neighbors in depth, and continuing neither side's surface, be it flat or slanted
- * (slanted planes are straight lines in 1/depth along rows and columns).
+/** Removes points that hang between two surfaces at a depth edge. In a row or a column such a point
+ * lies strictly between both neighbors in depth, and continues neither side's surface. Slanted
+ * surfaces count, too: planes are straight lines in 1/depth along rows and columns.
  * \param threshold what counts as "not the same": a share of the inverse depth.
  * \return number of points removed */
 std::size_t removeFlyingPixels(PointGrid& grid, double threshold);

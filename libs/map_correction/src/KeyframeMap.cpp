@@ -15,8 +15,8 @@
 namespace semantic_octree {
 namespace {
 
-/** Makes some tiles of a tree what they are in another tree, as an insertion would: nodes are
- * pruned, inner nodes' bookkeeping follows, and it is told where something changed. Both trees are
+/** Makes some tiles of a tree what they are in another tree, as an insertion would. Nodes are
+ * pruned, inner nodes' bookkeeping follows, and changes are told to followers. Both trees are
  * pruned, or both are not. */
 class TileReplacement {
  public:

@@ -54,8 +54,8 @@ cv::Point nearestPixel(const cv::Point2d& p) {
   return {int(std::lround(p.x)), int(std::lround(p.y))};
 }
 
-/** Not 0 in the columns of which nothing is known, the first row that of the largest y; empty
- * unless the map is in the plane: one layer of voxels, as a level laser scanner makes it. */
+/** Not 0 in the columns of which nothing is known; the first row is that of the largest y. It is
+ * empty unless the map is in the plane: one layer of voxels, as a level laser scanner makes it. */
 cv::Mat unknownColumns(const SemanticOcTree& tree, const cv::Rect& columns, double edge) {
   cv::Mat unknown(columns.size(), CV_8U, cv::Scalar(255));
   std::optional<int> layer;

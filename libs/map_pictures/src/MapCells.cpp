@@ -77,7 +77,7 @@ float lowestFlatSurface(const std::vector<float>& heights, std::size_t size) {
   return heights.front();
 }
 
-/** The height under the lowest ceiling if the cells are those of an indoor map: if most columns end
+/** The height under the lowest ceiling, if the map is of an indoor place. It is if most columns end
  * in a surface at nearly one height with room to stand below. Infinite otherwise. */
 double heightUnderCeiling(const std::vector<MapCell>& cells) {
   constexpr double kNone = std::numeric_limits<double>::infinity();

@@ -49,8 +49,8 @@ Eigen::Matrix3d orientation(const Viewpoint& viewpoint) {
   return R;
 }
 
-/** Along one axis of the picture: the least distance D at which all points (s sideways, d deep)
- * obey |s - offset| <= slope (d + D), and the offset. */
+/** Along one axis of the picture, the offset and the least distance D at which all points are seen.
+ * A point is s sideways and d deep: |s - offset| <= slope (d + D). */
 struct AxisFit {
   double distance, offset;
 };

@@ -12,10 +12,10 @@ namespace semantic_octree {
  *
  * A part: distance of its root (the cube of the trees' roots that it lies in) from that of the part
  * before; whether it is an octet; of an octet, its depth below the root, its path from there, and
- * the mask of children; of a leaf, its depth. Then each leaf: none, plain or with a record. A
- * plain one has its log-odds. A record is that of the leaf before, one of the frequent ones, or
- * written out: number of named classes, which ones, the log-odds of the rest, what those of the
- * named ones have more, and the leaf's log-odds if they do not follow from that. */
+ * the mask of children; of a leaf, its depth. Then each leaf: none, plain or with a record. A plain
+ * one has its log-odds. A record is that of the leaf before, one of the frequent ones, or written
+ * out. Then come the number of named classes, which ones, the log-odds of the rest, and what the
+ * named ones have more. At the end come the leaf's log-odds, if they do not follow from that. */
 template <typename Coder>
 class PartFormat {
  public:

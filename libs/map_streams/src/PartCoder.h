@@ -13,8 +13,8 @@ namespace semantic_octree {
  * redundancy from a digitised message", with the carry as in Subbotin's and LZMA's coders). Whole
  * numbers only: the same bytes on every machine.
  *
- * Three classes have the same functions, so that a format is written down once: bit(context, b)
- * codes a bit whose probability its context has learned, direct(value, n) codes n bits that are as
+ * Three classes have the same functions, so that a format is written down once. bit(context, b)
+ * codes a bit whose probability its context has learned. direct(value, n) codes n bits that are as
  * likely 0 as 1. A decoder gives b and value; behind the end of the bytes it reads zeros. */
 
 /** Probabilities that a bit is 0, in 2048ths, one a context. */
@@ -141,8 +141,8 @@ class BitCounter {
 };
 
 /** Parts of trees as bytes, and back. What is frequent in a map, its sender finds in all parts and
- * tells once (toText()): values and class records, which are then numbers of 8 bits, and how likely
- * each bit is. Bytes of one packet do not depend on those of others. */
+ * tells once (toText()). These are values and class records, which are then numbers of 8 bits, and
+ * how likely each bit is. Bytes of one packet do not depend on those of others. */
 class PartCoder {
  public:
   /** Knows nothing yet. \param rootDepth of the trees that parts belong to: octets are not above,

@@ -73,9 +73,9 @@ class StreamTree {
   /** Whether the cube is a leaf or an inner node. */
   bool has(const CellPath& cell);
 
-  /** An octet needs its cube to be there, as a leaf or an inner node; a leaf makes its place (a
-   * larger leaf becomes eight that say the same), but does not replace an inner node of the same
-   * revision: what made it one is younger. If it fails, what it has done is done again to no
+  /** An octet needs its cube to be there, as a leaf or an inner node. A leaf makes its place: a
+   * larger leaf becomes eight that say the same. It does not replace an inner node of the same
+   * revision, for what made it one is younger. If it fails, what it has done is done again to no
    * effect. \return whether the part found its place */
   bool apply(const TreePart& part, std::uint32_t revision);
   /** The tree as a map. \param empty a map of the same kind */

@@ -97,7 +97,7 @@ struct InnerNode : NodeSummary {
  * along the nodes whose G-value is above 0, is CompressedTree.
  *
  * A scan recomputes the nodes above the voxels that it changed, each once, from their eight
- * children; none is adjusted, so that the order of updates leaves no trace. */
+ * children. None is adjusted, so the order of updates leaves no trace. */
 class GTree final : public NodeObserver {
  public:
   GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution);

@@ -29,8 +29,9 @@ struct RowSizes {
   int row() const { return width + terms; }
 };
 
-/** The row of a node from its eight children's, probabilities and entropies of yes-or-no terms, and
- * all divergences (of terms with more outcomes: so far the mean of the children's entropies).
+/** The row of a node from its eight children's: probabilities and entropies of yes-or-no terms, and
+ * all divergences. For terms with more outcomes the latter is still the mean of the children's
+ * entropies.
  * \return the weighted sum of yes-or-no terms' divergences */
 double mixEqualShares(const double* const children[8], const RowSizes& sizes, const double* weights,
                       double* row, double* js);

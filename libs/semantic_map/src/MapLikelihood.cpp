@@ -23,8 +23,8 @@ using semantic_types::LabeledCloud;
 
 namespace {
 
-/** Likelihood that a return ends at a place of the map, or that a beam passes through it, by the
- * sensor model of the map's filter; see TLikelihoodOptions for the equations. */
+/** Likelihood that a return ends at a place of the map, or that a beam passes through it. It
+ * follows the sensor model of the map's filter; TLikelihoodOptions has the equations. */
 class PointLikelihood {
  public:
   explicit PointLikelihood(const SemanticOcTree& tree)
@@ -219,9 +219,9 @@ void addLabeledCloud(const CObservationLabeledCloud& observation, HashStream& ha
   hash.addAll(observation.cloud.probabilities);
 }
 
-/** A number that stands for all that a scan is made of, its labels and the sensor's pose included:
- * two observations with the same one have the same points. Reads each byte once, which takes a
- * small part of the time that it takes to make points of them. */
+/** A number that stands for all that a scan is made of, its labels and the sensor's pose included.
+ * Two observations with one number have the same points. Reads each byte once, which takes a small
+ * part of the time that it takes to make points of them. */
 std::uint64_t fingerprintOf(const CObservation& observation) {
   HashStream hash;
   if (const auto* scan = dynamic_cast<const CObservation3DRangeScan*>(&observation))

@@ -8,8 +8,8 @@
 namespace strict_files {
 
 /** A new file or folder that is to take a place of its own later. It is locked while somebody
- * writes it: so what is left of a process that was killed can be told from it, and is removed by
- * the next that writes into the same folder. */
+ * writes it. So what a killed process left can be told from it, and the next that writes into the
+ * same folder removes that. */
 class Unfinished {
  public:
   enum class Kind { File, Folder };

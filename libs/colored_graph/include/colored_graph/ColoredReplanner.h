@@ -9,10 +9,10 @@ namespace colored_graph {
 /** COLPA*: keeps the optimal path while the graph changes and the start moves.
  *
  * Lifelong planning A* (Koenig, Likhachev, Furcy 2004) over cost vectors, from the goal as in D*
- * Lite: what was found before stays, and only vertices whose cost to the goal changed and matters
- * for the path are looked at again. It follows the graph's change log, so nobody has to tell it
- * what changed. Edges are lazy: unevaluated ones count with their lower bound. Those on the best
- * path are evaluated from the start on, and the path is repaired until none is left. A path that is
+ * Lite. What was found before stays. Only vertices whose cost to the goal changed and matters for
+ * the path are looked at again. It follows the graph's change log, so nobody has to tell it what
+ * changed. Edges are lazy: unevaluated ones count with their lower bound. Those on the best path
+ * are evaluated from the start on, and the path is repaired until none is left. A path that is
  * optimal under lower bounds and is evaluated is optimal (LazySP, Dellin and Srinivasa 2016). */
 class ColoredReplanner {
  public:

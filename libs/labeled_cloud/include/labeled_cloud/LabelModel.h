@@ -13,8 +13,8 @@ namespace labeled_cloud {
 class ConfusionMatrix {
  public:
   /** \param counts K x K: how often class column + 1 was answered where class row + 1 was true.
-   * Rows are blended with the answers' overall frequencies, which count like one observation, so
-   * that a class seen seldom or never does not win by what little is known about it.
+   * Rows are blended with the answers' overall frequencies, which count like one observation. So a
+   * class that is hardly ever seen does not win by what little is known about it.
    * \throw std::invalid_argument it is not square, or holds a negative or no finite number, or
    * nothing but zeros. */
   explicit ConfusionMatrix(const std::vector<std::vector<double>>& counts);

@@ -25,11 +25,11 @@ struct CorrectionReport {
   std::size_t tiles = 0;        ///< of 8 x 8 x 8 voxels that were made anew
 };
 
-/** A map that can be corrected: it remembers the scans that it is made of, keyframe by keyframe, so
- * that keyframes can be moved, as a closed loop asks for, and removed.
+/** A map that can be corrected: it remembers the scans that it is made of, keyframe by keyframe. So
+ * keyframes can be moved, as a closed loop asks for, and removed.
  *
  * After any sequence of insertions, moves and removals the map is, bit for bit, a new one of the
- * scans that are left: inserted in their order, at their present poses and times (see
+ * scans that are left. These are inserted in their order, at their present poses and times (see
  * SemanticOcTree::age()). That holds for nodes, class records and G-values, also where log-odds are
  * at their limits or more than three classes were seen. Readers of its changes (MapFollower) are
  * told of corrections as of insertions.

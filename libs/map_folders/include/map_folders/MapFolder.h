@@ -31,11 +31,11 @@ struct MapFolderOptions {
   void validate() const;
 };
 
-/** A map that may be larger than memory: its parts are in a folder, one file a tile, and come in
+/** A map that may be larger than memory. Its parts are in a folder, one file a tile. They come in
  * when a scan, a query or anything else that reads nodes needs them. Those used least lately go out
  * (scans and incoming tiles are uses) where there are more than the budget allows.
  *
- * The map stays an ordinary map, the same to the last bit as without a folder: what is above the
+ * The map stays an ordinary map, the same to the last bit as without a folder. What is above the
  * tiles, and the tiles' own mixtures and G-values, stays in memory. Beside what SemanticOcTree
  * says:
  * - A Node within a tile is valid until another tile comes in. Whatever goes through a tree depth
@@ -53,9 +53,9 @@ struct MapFolderOptions {
  *   Abstraction changes (setWeights() and the like), setAbstraction() has to be called anew.
  *
  * Nothing that was saved is touched before the next save(), which is done when the index takes its
- * place: whenever the process ends, the folder is what it was when it was last saved. One process
+ * place. Whenever the process ends, the folder is what it was when it was last saved. One process
  * writes, others read what was saved when they opened it. The index tells the checksum and counts
- * of each file, and its own: a file is compared with them when it is read, and removed only if an
+ * of each file, and its own. A file is compared with them when it is read. It is removed only if an
  * index calls it old (doc/handbook/large-maps.md). */
 class MapFolder {
  public:

@@ -124,14 +124,14 @@ class MapCanvas {
   }
 
   /** The map from above: per column the highest occupied cell in the color of its likeliest class
-   * (gray: none), shaded by the relief; cells much coarser than the finest are hatched, for they
+   * (gray: none), shaded by the relief. Cells much coarser than the finest are hatched, for they
    * are not full of that class. Of a map in the plane, which is one layer of voxels, unknown space
    * is gray. Its classes are the first entries of the legend. \param style its heights and
    * occupancy \throw std::invalid_argument as PictureStyle::validate(). */
   void drawMap(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
-  /** Draws what of a map lies on the canvas or up to 5 m beside it, otherwise as drawMap(): as fine
-   * as this part can be drawn, and cut off as if there were no more. The rest of a large map is not
-   * looked at. */
+  /** Draws what of a map lies on the canvas or up to 5 m beside it, otherwise as drawMap(). That
+   * part is drawn as finely as it can be, and cut off as if there were no more. The rest of a large
+   * map is not looked at. */
   void drawMapAround(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style);
   /** Copies what a canvas of the same scale shows of a part, m. The legend stays. */
   void paste(const MapCanvas& from, const Eigen::AlignedBox2d& part);

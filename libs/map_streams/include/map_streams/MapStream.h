@@ -12,11 +12,11 @@ namespace semantic_octree {
 /** \file
  * A compressed tree in packets, over a radio that loses, exchanges and repeats them.
  *
- * The tree's leaves travel in the order of the alphas at which they appear (see
- * AlphaTrees): first the blocks, each a leaf, then, by falling alpha, what expanding
- * a node tells, its eight children. So each prefix is an optimal tree. Packets can be read one by
- * one; what is told of a node that is not there yet waits for it. A map that changed is told by
- * what differs from the tree that the receiver has. Nothing here knows of sockets or clocks. */
+ * The tree's leaves travel in the order of the alphas at which they appear (see AlphaTrees). First
+ * come the blocks, each a leaf; then, by falling alpha, the eight children of each node that is
+ * expanded. So each prefix is an optimal tree. Packets can be read one by one; what is told of a
+ * node that is not there yet waits for it. A map that changed is told by what differs from the tree
+ * that the receiver has. Nothing here knows of sockets or clocks. */
 
 constexpr std::size_t kMaxDatagramBytes = 1000;
 

@@ -17,8 +17,8 @@ using semantic_octree::SemanticOcTree;
 
 /** A cube of a map as a view shows it. */
 struct ViewCell : Cube {
-  /** What it shows: the node for the cube or for a larger one around it; of a cube that stands for
-   * finer cells, one of these, from its upper half if there is one; none: unknown space. */
+  /** What it shows: the node for the cube or for a larger one around it. If the cube stands for
+   * finer cells, it is one of these, from its upper half if there is one. None: unknown space. */
   semantic_octree::SemanticOcTreeNode node;
   /** Tells inner nodes of the map apart; 0 for leaves. */
   std::uint64_t innerNode = 0;
@@ -48,8 +48,8 @@ struct KeyBox {
  * of semantic-map-compress with solution(); a leaf of the map that reaches above the blocks stays
  * one.
  *
- * It knows what each inner node of the map tells of each term, from which the compressed trees of
- * all weights and alphas follow without the map's G-values: a node is expanded while alpha is below
+ * It knows what each inner node of the map tells of each term. The compressed trees of all weights
+ * and alphas follow from that, without the map's G-values: a node is expanded while alpha is below
  * its own. Nodes are numbered parents first, in the order of children; a node's subtree follows it.
  */
 class LiveCompression {

@@ -13,7 +13,7 @@ class Placement;
 class Unfinished;
 
 /** A file that is written beside its place and takes its name only when it is complete and on the
- * disk, so that what was there stays if anything fails, and is whole if others write it, too: the
+ * disk. What was there stays if anything fails. If others write the file, too, it is whole: the
  * last to commit wins. What a killed process left of its own is removed by the next one. */
 class StagedFile {
  public:
@@ -41,8 +41,8 @@ class StagedFile {
   std::unique_ptr<Unfinished> m_unfinished;
 };
 
-/** The folder of the results. Files are written into a folder inside it and take their place at the
- * end, all of them, when they are on the disk: what was there stays if anything fails. What killed
+/** The folder of the results. Files are written into a folder inside it. All of them take their
+ * place at the end, when they are on the disk; what was there stays if anything fails. What killed
  * processes left of theirs is removed by the next one. */
 class OutputFolder {
  public:
@@ -61,9 +61,9 @@ class OutputFolder {
   void takeAlong(const std::string& lock);
   /** Puts these files in place, in this order; may be called again with others. One that was not
    * written removes its predecessor, so that files of different maps are never side by side. \throw
-   * std::runtime_error naming the file that cannot be written, or whose place something else has
-   * that is no regular file, or that is there although it was to be new (declareNew()): then the
-   * files that have no place are kept in a folder beside them, which is said. */
+   * std::runtime_error naming the file. It cannot be written, something that is no regular file has
+   * its place, or it is there although it was to be new (declareNew()). Then the files that have no
+   * place are kept in a folder beside them, which is said. */
   void commit(const std::vector<std::string>& names);
 
  private:

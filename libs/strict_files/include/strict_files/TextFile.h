@@ -59,8 +59,8 @@ inline std::vector<std::string> csvFieldsOf(const std::string& line) {
   return fields;
 }
 
-/** While one lives, a stream writes and reads numbers as files have them ("0.5", "1000"), whatever
- * std::locale::global() of the program is: it may have decimal commas, and group digits. */
+/** While one lives, a stream writes and reads numbers as files have them ("0.5", "1000"). The
+ * program's std::locale::global() may have decimal commas and group digits. */
 class ClassicNumbers {
  public:
   explicit ClassicNumbers(std::ios& stream)

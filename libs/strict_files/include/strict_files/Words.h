@@ -11,8 +11,8 @@
 
 namespace strict_files {
 
-/** Whether two names of options or of their values are the same: case, "_" and "-" do not tell them
- * apart, so that MRPT's way of writing (maxRange) names max_range. */
+/** Whether two names of options or of their values are the same. Case, "_" and "-" do not tell them
+ * apart, so MRPT's maxRange names max_range. */
 bool sameWord(const std::string& a, const std::string& b);
 
 /** What to say of a word that is none of the known ones: "unknown key 'max_rnge'; did you mean

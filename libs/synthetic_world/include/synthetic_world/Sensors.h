@@ -93,8 +93,8 @@ struct LidarOptions {
   double lowest = -25, highest = 15;        // elevation of the first and last ring, degrees
   static constexpr double kMinRange = 0.8;  // m; nearer returns are lost
   double maxRange = 60;                     // m
-  /** Share of the beams on windows, cars, water and signs that return by way of what these mirror:
-   * such ghosts lie behind the surface, many of them below the ground; 0..1. */
+  /** Share (0..1) of the beams on windows, cars, water and signs that return by way of what these
+   * mirror. Such ghosts lie behind the surface, many of them below the ground. */
   double ghosts = 0;
   SensorNoise noise;
 

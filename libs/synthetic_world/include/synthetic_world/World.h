@@ -10,7 +10,7 @@
 
 namespace synthetic_world {
 
-/** The hills: a square of ground around the origin whose height is interpolated bilinearly between
+/** The hills: a square of ground around the origin. Its height is interpolated bilinearly between
  * the nodes of a one-meter grid, so that a ray meets it in closed form. */
 class Terrain {
  public:
