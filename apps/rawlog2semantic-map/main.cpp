@@ -115,8 +115,7 @@ struct Cli {
     outputs.addOther(app.add_option("--preview", preview,
                                     "Folder for pictures: images with their labels and points")
                          ->type_name("FOLDER"));
-    app.add_option("--preview-every", previewEvery,
-                   "Number of scans from one preview to the next")
+    app.add_option("--preview-every", previewEvery, "Number of scans from one preview to the next")
         ->check(isNumber(strict_files::above(0)))
         ->capture_default_str();
   }

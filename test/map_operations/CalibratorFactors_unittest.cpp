@@ -34,7 +34,7 @@ LabeledCloud rowOfVoxels(std::mt19937& random) {
 }
 
 struct RowOfVoxels {
-  explicit RowOfVoxels(std::vector<float> prior) : map(emptyMap()) {
+  explicit RowOfVoxels(std::vector<float> prior = {}) : map(emptyMap()) {
     std::mt19937 random(11);
     map.setClassPrior(std::move(prior));
     Calibrator calibrator(1, kNumClasses);
@@ -63,15 +63,16 @@ struct RowOfVoxels {
 }  // namespace
 
 TEST(Calibrator, knowsWhichOfTwoClassesIsFrequentWhereLabelsErr) {
-  const std::vector<float> saidToBeAlike(kNumClasses, 0.125f);
-  for (const auto& prior : {std::vector<float>(), saidToBeAlike}) {
-    RowOfVoxels row(prior);
-    const Calibration with = row.calibration;
-    ASSERT_EQ(with.factors.size(), static_cast<std::size_t>(kNumClasses));
-    EXPECT_LT(with.factors[1], 0.6 * with.factors[0]);
-    EXPECT_LT(row.logLoss(with), 0.9 * row.logLoss({with.power, with.shared}));
-    EXPECT_LT(row.logLoss(with), 0.9 * row.logLoss({}));
-  }
+  RowOfVoxels row;
+  const Calibration with = row.calibration;
+  ASSERT_EQ(with.factors.size(), static_cast<std::size_t>(kNumClasses));
+  EXPECT_LT(with.factors[1], 0.6 * with.factors[0]);
+  EXPECT_LT(row.logLoss(with), 0.9 * row.logLoss({with.power, with.shared}));
+  EXPECT_LT(row.logLoss(with), 0.9 * row.logLoss({}));
+}
+
+TEST(Calibrator, fitsNoFactorsWhereTheMapWasToldHowFrequentClassesAre) {
+  EXPECT_TRUE(RowOfVoxels(std::vector<float>(kNumClasses, 0.125f)).calibration.factors.empty());
 }
 
 namespace {

@@ -330,7 +330,7 @@ TEST(Planar, othersComeToThePartThatAMapHolds) {
 TEST(Planar, logsOfTwoPlacesAreSaidToBeApart) {
   Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
   append(r, recordingOf("park", 4, laserOf(), kDriven, kFlat), 0, 60);
-  EXPECT_NE(warningsOf(r).find("at 1 places scans fit nothing that was seen before, and only "
+  EXPECT_NE(warningsOf(r).find("at one place scans fit nothing that was seen before, and only "
                                "odometry leads across"),
             std::string::npos)
       << warningsOf(r);

@@ -164,8 +164,8 @@ std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) con
   if (beliefs.empty()) return [has] { return has; };
   const FilterParameters& parameters = map.filterParameters();
   const bool err = !has.factors.empty() || labelsErr(map);
-  return [has, numLabels, err, beliefs = std::move(beliefs), labels = *this,
-          accuracy = parameters.accuracy]() mutable {
+  return [has, numLabels, err, hasFactors = err && parameters.classPrior.empty(),
+          beliefs = std::move(beliefs), labels = *this, accuracy = parameters.accuracy]() mutable {
     std::sort(beliefs.begin(), beliefs.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
     const LabeledVoxels seen = labels.seenAgain();
@@ -190,7 +190,7 @@ std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) con
       const std::string& ofVoxel = labels.m_voxels.at(voxel);
       fit.add(belief, classesOf(ofVoxel), static_cast<double>(ofVoxel.size()));
     }
-    const std::vector<double> none(err ? static_cast<std::size_t>(numClasses) : 0, 1.0);
+    const std::vector<double> none(hasFactors ? static_cast<std::size_t>(numClasses) : 0, 1.0);
     Calibration found = fit.fit({0.7, 0.1, none});
     const auto together = [numLabels](double had, double fits) {
       return (kLabelsBefore * had + numLabels * fits) / (kLabelsBefore + numLabels);

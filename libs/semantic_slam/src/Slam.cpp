@@ -58,7 +58,8 @@ std::vector<std::string> SlamReport::warnings() const {
                        " of the scans fit nothing that was seen before, and are where odometry has "
                        "them: the map is probably wrong there");
   const auto lostAt = [](std::size_t places) {
-    return "at " + std::to_string(places) + " places scans fit nothing that was seen before, and ";
+    return (places == 1 ? "at one place" : "at " + std::to_string(places) + " places") +
+           std::string(" scans fit nothing that was seen before, and ");
   };
   if (torn > joined)
     warnings.push_back(

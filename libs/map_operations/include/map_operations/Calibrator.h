@@ -41,8 +41,9 @@ class Calibrator {
    * labels say, each counting by its points. What the map has counts like 100 labels; labels count
    * from the third of a voxel on, for fewer cannot outvote each other. Power and share are in steps
    * of 1/256. Classes get factors where labels err: where the first two labels of more than one
-   * voxel in 25 differ, and no border of the two is beside. There, places may be wrong in all
-   * scans, too: edges between voxels tell how often. */
+   * voxel in 25 differ, and no border of the two is beside. Not if the map was told how frequent
+   * classes are (FilterParameters::classPrior). Where labels err, places may be wrong in all scans,
+   * too: edges between voxels tell how often. */
   Calibration fit(const SemanticOcTree& map) const { return fitLater(map)(); }
   /** fit() in two parts: the map is read at once. The rest, which takes most of the time, is done
    * by whoever calls what is returned, in any thread. */

@@ -169,7 +169,7 @@ class CollisionChecker::Sweep {
   }
 
   bool isFreeBetween(const CheckedDisc& d, Column last, Column column,
-                                       const Placement& placed) const {
+                     const Placement& placed) const {
     const auto [fromX, fromY] = m_last(d.disc.x, d.disc.y);
     const auto [x, y] = placed(d.disc.x, d.disc.y);
     const Column corner = between(m_checker.m_ground, last, {fromX, fromY}, column, {x, y});
