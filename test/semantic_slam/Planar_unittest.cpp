@@ -245,6 +245,31 @@ TEST(Planar, aPlaceIsFoundFartherAwayThanTheNearWindow) {
   EXPECT_GT(right, 0);
 }
 
+/** Something near hides three beams in ten of a scanner that sees 8 m. Then no look while it drives
+ * tells enough that the robot is back. */
+TEST(Planar, aLoopThatNobodySawWhileDrivingIsFoundAtTheEnd) {
+  Recording r = recordingOf("park", 1, laserOf(), kWhole, kFlat);
+  std::mt19937 random(3);
+  const auto share = [&random] { return static_cast<float>(random() / 4294967296.0); };
+  for (LabeledCloud& cloud : r.clouds) {
+    std::vector<Eigen::Vector3f> near;
+    for (const Eigen::Vector3f& p : cloud.points) {
+      if (p.norm() > 8) continue;
+      const bool isHidden = share() < 0.3f;
+      near.push_back(isHidden ? (0.5f + share()) / p.norm() * p : p);
+    }
+    cloud.points = near;
+  }
+  Slam slam({});
+  addAll(slam, r, kRobotLaser);
+  const std::size_t loops = slam.report().loops;
+  const PathErrors before = errorsOf(slam.poses(), r);
+  EXPECT_TRUE(slam.finish());
+  EXPECT_GT(slam.report().loops, loops);
+  EXPECT_LT(errorsOf(slam.poses(), r).last, 0.8 * before.last);
+  EXPECT_LE(errorsOf(slam.poses(), r).rootMeanSquare, before.rootMeanSquare);
+}
+
 TEST(Planar, anApertureThatIsSaidToBeHalfIsNoticed) {
   Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
   EXPECT_EQ(warningsOf(r), "");
