@@ -88,3 +88,16 @@ TEST_F(PoseSearchTest, aWayIntoANarrowPlaceIsFoundFromWithin) {
     EXPECT_NEAR(std::remainder(way.back().heading - to.phi, 2 * M_PI), 0, 1e-4);
   }
 }
+
+TEST_F(PoseSearchTest, aGapThatTheVehicleIsTooWideForAttractsNobody) {
+  // A wall with a gap ahead that its wheels alone would get through, and a gate far aside.
+  options.vehicle.footprint = Footprint::rectangle(-1, 1, 2);
+  world.floor(-15, 15, -15, 15, PaintedWorld::Road);
+  for (const auto& [from, to] :
+       {std::pair(-15.0, -0.6), std::pair(0.6, 9.0), std::pair(13.0, 15.0)})
+    world.box(0, 0.2, from, to, 0, 1, PaintedWorld::Wall);
+  const auto way = wayBetween(*checker().place({-5, 0, 0}), *checker().place({5, 0, 0}), checker(),
+                              ClassPrices(checker().order()));
+  ASSERT_GE(way.size(), 2u);
+  PathChecker(world.map(), options.vehicle).expectDrivable(way);
+}

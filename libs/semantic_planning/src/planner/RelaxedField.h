@@ -173,7 +173,8 @@ inline RelaxedField::Label& RelaxedField::label(const Cell& cell) {
 }
 
 /** The least that the rest of a way may cost from the ground around a place on, for a vehicle that
- * could turn on the spot and fits everywhere: classes under its wheels and length count. What
+ * could turn on the spot and needs no more room than its origin does, however it stands: classes
+ * under its wheels and length count. What
  * nobody asks for is not found out. */
 class CostField {
  public:
@@ -187,7 +188,8 @@ class CostField {
         m_prices(prices),
         m_center(checker.ground().columnAt(center.pose.x, center.pose.y)),
         m_reach(static_cast<int>(radius / checker.ground().voxelSize())),
-        m_field(checker) {}
+        m_field(checker),
+        m_room(roomAround(checker)) {}
 
   /** A place from which the rest costs so much. */
   void add(const GroundPose& pose, Length cost) {
@@ -216,6 +218,17 @@ class CostField {
     return std::max(std::abs(c.x - m_center.x), std::abs(c.y - m_center.y)) <= m_reach;
   }
 
+  /** Surface::clearance2 that the vehicle's origin needs at the least, however it stands: what each
+   * disc needs, less its distance from the origin and what two columns round off. */
+  static int roomAround(const CollisionChecker& checker) {
+    const double voxel = checker.ground().voxelSize();
+    double room = 0;
+    for (const auto& d : checker.discs())
+      room =
+          std::max(room, std::sqrt(d.needed2) - std::hypot(d.disc.x, d.disc.y) / voxel - M_SQRT2);
+    return static_cast<int>(room * room);
+  }
+
   Place placeAt(const GroundPose& pose) const {
     const Ground& ground = m_checker.ground();
     return m_field.placeNear(ground.columnAt(pose.pose.x, pose.pose.y), pose.z, 2 * ground.step());
@@ -241,7 +254,8 @@ class CostField {
       for (const std::size_t back : {step, step + kSteps.size() / 2}) {
         const Place from =
             m_field.placeNear(here.column + kSteps[back], here.surface->z, ground.step());
-        if (from.surface) reach(from, cost + length + m_prices.ofRank(rank, length));
+        if (from.surface && from.surface->clearance2 >= m_room)
+          reach(from, cost + length + m_prices.ofRank(rank, length));
       }
     }
   }
@@ -251,6 +265,7 @@ class CostField {
   const Column m_center;
   const int m_reach;  ///< columns to each side of it
   RelaxedField m_field;
+  const int m_room;  ///< Surface::clearance2 below the origin, at least
   MonotoneQueue<RelaxedField::Cell> m_queue;
 };
 
