@@ -81,6 +81,19 @@ TEST_F(Rosbag2, sqliteHasThemToo) {
   expectDrive(scansOf(quoted(folder / "a.db3"), folder));
 }
 
+TEST_F(Rosbag2, sqliteHasWhatItsRecorderDidNotWriteToItsPlaceYet) {
+  writeSqliteBag(folder / "a.db3", drive());
+  sqlite3* recorder = nullptr;
+  sqlite3_open((folder / "a.db3").c_str(), &recorder);
+  sqlite3_exec(recorder,
+               "PRAGMA journal_mode = WAL;"
+               "INSERT INTO messages SELECT NULL, m.topic_id, m.timestamp, m.data FROM messages m, "
+               "messages n, messages o",
+               nullptr, nullptr, nullptr);
+  EXPECT_EQ(scansOf(quoted(folder / "a.db3"), folder).size(), 4u + 4 * 10 * 10);
+  sqlite3_close(recorder);
+}
+
 TEST_F(Rosbag2, aFolderHasSeveralFilesInTheOrderOfTheirNumbers) {
   const std::vector<BagMessage> all = drive();
   for (std::size_t i = 0; i < all.size(); ++i)

@@ -132,6 +132,9 @@ TEST(MoverTracker, ForgetsWhoIsNotSeenAnyMore) {
   EXPECT_NEAR(follower.at(3)[0].place.x(), 3, 0.5);
   follower.scan({}, 3.5);
   EXPECT_TRUE(follower.at(3.5).empty());
+  follower.scan({{0, 0}}, 1e6);  // a stamp that lies
+  follower.scan({}, 4);
+  EXPECT_TRUE(follower.at(4).empty());
 }
 
 TEST(MoverTracker, FollowsOnlyClassesThatMove) {

@@ -236,6 +236,20 @@ TEST(Navigator, MapsAndDrivesOnWhereItsClockLeapsOrOneStampLies) {
   }
 }
 
+TEST(Navigator, MapsAndDrivesOnWhereItsClockGoesBackOrItsFirstStampLies) {
+  for (const bool isBack : {true, false}) {
+    Robot robot(someOptions(0.3));
+    robot.navigator.setGoal({3, 2, 0});
+    robot.stampsOff = isBack ? 0 : 1e6;
+    robot.drive(0.4);
+    robot.stampsOff = 0;
+    robot.clockOff = isBack ? -30 : 0;
+    EXPECT_EQ(robot.drive(), Status::Arrived) << robot.navigator.reason();
+    EXPECT_LT(robot.seconds(), 20);
+    EXPECT_NEAR(robot.navigator.mappedAt(), robot.seconds(), 1);
+  }
+}
+
 TEST(Navigator, InsertsPointsThatHaveTimesAsIfTheyHadBeenSeenAtOnce) {
   for (const double latency : {0.0, 0.3}) {
     semantic_octree::SemanticOcTree map(0.2, synthetic_world::classTable());

@@ -67,6 +67,13 @@ class Block {
     for (double x = -1; x < 9; x += apart() / 2) addNiche(x, -2);
     for (double y = 0; y < 20; y += apart()) addNiche(-2, y), addNiche(301.5, y);
   }
+  /** Instead a hall, 6 m wide and longer than it sees, with equal pillars along its walls.
+   * \param apart m */
+  explicit Block(double apart) {
+    addWalls(-100, 200, -3, 3);
+    for (double x = -50; x < 150; x += apart)
+      for (const double y : {-3., 2.6}) addWalls(x, x + 0.4, y, y + 0.4);
+  }
   LabeledCloud seenAt(const Eigen::Isometry3d& T_world_robot) {
     LabeledCloud cloud;
     for (int degrees = 0; degrees < 360; ++degrees) {
@@ -243,6 +250,25 @@ TEST(Planar, aPlaceIsFoundFartherAwayThanTheNearWindow) {
         e.isDoubtful && e.b > e.a + 500 &&
         (keyframes[e.a].inverse() * keyframes[e.b] * e.T_a_b.inverse()).translation().norm() < 0.3;
   EXPECT_GT(right, 0);
+}
+
+TEST(Planar, amongEqualPillarsLoopsStayOpenAndNothingIsSaidAgainstTheMap) {
+  Block hall(1.2);
+  Recording r;
+  const auto add = [&](double x, double heading) {
+    r.truth.push_back(Eigen::Translation3d(x, 0, 0) * Block::turned(heading));
+    r.clouds.push_back(hall.seenAt(r.truth.back()));
+  };
+  for (int x = 0; x < 50; ++x) add(x, 0);
+  for (int i = 0; i < 15; ++i) add(50, i * M_PI / 15);
+  for (int x = 50; x >= 0; --x) add(x, M_PI);
+  r.odometry = r.truth;
+  Slam slam({});
+  addAll(slam, r, Eigen::Isometry3d::Identity());
+  EXPECT_GT(slam.report().open, 0u);
+  EXPECT_FALSE(slam.finish());
+  EXPECT_EQ(slam.report().loops, 0u);
+  EXPECT_EQ(slam.report().apart, 0);
 }
 
 /** Something near hides three beams in ten of a scanner that sees 8 m. Then no look while it drives

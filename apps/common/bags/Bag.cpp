@@ -52,6 +52,13 @@ std::vector<fs::path> filesOfBag(const fs::path& bag) {
   return files;
 }
 
+/** A recorder that was killed leaves what came last beside the database. */
+std::uint64_t bytesOf(const fs::path& database) {
+  std::error_code none;
+  const std::uint64_t beside = fs::file_size(database.string() + "-wal", none);
+  return fs::file_size(database) + (none ? 0 : beside);
+}
+
 /** A database that is only read, and whose bytes are not trusted. */
 class Database {
  public:
@@ -66,7 +73,7 @@ class Database {
     sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);  // which may have no end
     sqlite3_exec(opened, "PRAGMA cell_size_check = ON", nullptr, nullptr, nullptr);
     constexpr int kSteps = 10'000, kStepsOfByte = 10;  // a row takes some 20, and as many bytes
-    m_left = 1 + static_cast<std::int64_t>(fs::file_size(file)) * kStepsOfByte / kSteps;
+    m_left = 1 + static_cast<std::int64_t>(bytesOf(file)) * kStepsOfByte / kSteps;
     sqlite3_progress_handler(
         opened, kSteps, [](void* left) -> int { return --*static_cast<std::int64_t*>(left) < 0; },
         &m_left);
@@ -129,7 +136,7 @@ void readSqlite(const fs::path& file, const WantsTopic& wants, const TakeMessage
   if (wanted.empty()) return;
   Query order(database, "SELECT rowid, topic_id FROM messages ORDER BY timestamp");
   Query messages(database, "SELECT data FROM messages WHERE rowid = ?");
-  std::uint64_t left = fs::file_size(file);
+  std::uint64_t left = bytesOf(file);
   while (order.next()) {
     const auto topic = wanted.find(order.number(1));
     if (topic == wanted.end() || !messages.nextFor(order.number(0))) continue;

@@ -176,7 +176,7 @@ void MoverTracker::update(double seconds) {
     correct(m_tracks[t], seen[i]);
   }
   m_tracks.erase(std::remove_if(m_tracks.begin(), m_tracks.end(),
-                                [&](const Track& t) { return seconds - t.seenAt > kForget; }),
+                                [&](const Track& t) { return std::abs(seconds - t.seenAt) > kForget; }),
                  m_tracks.end());
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (!taken[i])

@@ -311,9 +311,11 @@ std::size_t Navigator::numCompressedLeaves() {
 }
 
 DriveCommand Navigator::step(double clock) {
-  const double seconds = withoutLeaps(clock);
+  const double seconds = std::max(m_steppedAt.value_or(kNever), withoutLeaps(clock));
   m_steppedAt = seconds;
   m_leapt = clock - seconds;
+  m_insertingFrom = std::min(m_insertingFrom, seconds);  // stamps of before the first step may lie
+  m_mappedAt = std::min(m_mappedAt, seconds);
   if (isInserting() && seconds - m_insertingFrom >= m_options.mappingLatency - kSameTime) finish();
   if (m_guidesNext && mayGuide()) guide(seconds);
   CpuClock time;

@@ -222,7 +222,7 @@ bool SlamEngine::closeLeftLoops() {
       const Seen stretch = pointsOf(k - std::min(k, keyframesBeside() / 2),
                                     std::min(k + keyframesBeside() / 2, m_keyframes.size() - 1), k);
       const auto look = lookAround(place, k, stretch, window);
-      const auto edge = look ? edgeOf(*look, stretch, k) : std::nullopt;
+      const auto edge = look && look->isAlone ? edgeOf(*look, stretch, k) : std::nullopt;
       if (!edge) continue;
       looks.push_back(*edge);
       const std::size_t before = m_edges.size();

@@ -84,8 +84,8 @@ struct RobotState {
  *     }
  *
  * What comes out depends on what goes in alone, not on how long threads take. Calls come from one
- * thread. Seconds are of one clock; where it leaps by more than a minute, in either direction, no
- * time has passed. MRPT's navigator takes mrpt::Clock. */
+ * thread. Seconds are of one clock; where it goes back, or leaps by more than a minute, no time has
+ * passed. MRPT's navigator takes mrpt::Clock. */
 class Navigator {
  public:
   enum class Status {
