@@ -168,3 +168,16 @@ TEST_P(FailingCalls, leaveTheOldFilesOrTheNewAndSayWhy) {
     }
   }
 }
+
+TEST(FailingLock, isNoLeaveToWrite) {
+  const TemporaryFolder folder;
+  const std::string map = (folder / "map.semantic").string(), tiles = (folder / "tiles").string();
+  saveTree(smallPlace(0, 2), map);
+  const ProgramRun failed = runCommand("MSO_FAIL='open 0' MSO_FAIL_BELOW='" + tiles +
+                                       "/.writer.lock' LD_PRELOAD='" MSO_FAILING_CALLS
+                                       "' " MSO_BIN_DIR "/semantic-map-merge '" +
+                                       map + "' -o '" + tiles + "' --tiles 1.6");
+  EXPECT_EQ(failed.status, 1) << failed.output;
+  EXPECT_TRUE(contains(failed.output, "tiles: Too many open files")) << failed.output;
+  EXPECT_FALSE(fs::exists(tiles));
+}

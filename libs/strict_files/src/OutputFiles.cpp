@@ -202,7 +202,8 @@ int operationOf(FileLock::Kind kind) { return kind == FileLock::Kind::Shared ? L
 
 FileLock::FileLock(const std::filesystem::path& file)
     : m_descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-  if (m_descriptor < 0) m_descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (m_descriptor < 0 && (errno == EACCES || errno == EROFS))
+    m_descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
 }
 
 FileLock::FileLock(const std::filesystem::path& file, Kind kind) : FileLock(file) {
