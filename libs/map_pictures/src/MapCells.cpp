@@ -112,8 +112,7 @@ MapCells collectCells(const SemanticOcTree& tree, const PictureStyle& style,
                       const std::optional<Eigen::AlignedBox2d>& part) {
   MapCells map;
   const auto takes = [&](const SemanticOcTree::Node& node, const Cube& cube) {
-    return node.getOccupancy() > MapCells::kOccupied &&
-           (!part || isInPart(cube, *part, tree.getResolution()));
+    return tree.isNodeOccupied(node) && (!part || isInPart(cube, *part, tree.getResolution()));
   };
   const auto [depth, most] = depthToDraw(tree, takes);
   map.depth = static_cast<unsigned>(depth);

@@ -86,9 +86,6 @@ struct MapCell {
 
 /** What a picture shows of a map. */
 struct MapCells {
-  /** Cells count as occupied above this occupancy. */
-  static constexpr double kOccupied = 0.5;
-
   std::vector<MapCell> cells;
   /** Nothing finer than this depth is drawn. */
   unsigned depth;

@@ -116,8 +116,7 @@ bool isFilled(const SemanticOcTree& tree, const MapCells& map, const MapCell& ce
     key[axis] = static_cast<octomap::key_type>(k);
   }
   const auto node = tree.search(key, cell.depth);
-  return node && node->getOccupancy() > MapCells::kOccupied &&
-         (node->isLeaf() || cell.depth == map.depth);
+  return node && tree.isNodeOccupied(node) && (node->isLeaf() || cell.depth == map.depth);
 }
 
 /** Two triangles, in a class's color with light from above. */

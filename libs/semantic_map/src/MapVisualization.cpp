@@ -19,7 +19,6 @@
 namespace semantic_map {
 
 using mrpt_compat::drawing::COctoMapVoxels;
-using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
 using semantic_types::trafficLight;
 using tree_abstraction::relativeEntropy;
@@ -82,10 +81,8 @@ class VoxelSets {
   }
 
   void add(const SemanticOcTree::Node& node, const mrpt::math::TPoint3Df& center, double size) {
-    const CellState state = m_tree.query(node);
     if (center.z < m_options.minHeight || center.z > m_options.maxHeight) return;
-    constexpr double kOccupied = 0.5;
-    const bool occupied = state.occupancy > kOccupied;
+    const bool occupied = m_tree.isNodeOccupied(node);
     if (!occupied && !m_options.free) return;
     m_voxels->push_back_Voxel(
         occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED

@@ -45,7 +45,12 @@ SemanticOcTree::Belief SemanticOcTree::belief(const Node& leaf) const {
 }
 
 std::vector<double> SemanticOcTree::distribution(const Node& node) const {
-  std::vector<double> p(numClasses() + 1, 0.0), scratch(p.size());
+  std::vector<double> p(numClasses() + 1, 0.0);
+  if (node.isLeaf()) {
+    m_filter.distribution(belief(node), p.data());
+    return p;
+  }
+  std::vector<double> scratch(p.size());
   const double known = addMixture(*this, m_filter, node, 1.0, p, scratch);
   for (double& x : p) x /= known;
   return p;

@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <limits>
 #include <new>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -149,6 +150,21 @@ struct AxisLanes {
   MSO_INLINE LaneBits movedWhere(const LaneBits& chosen, const LaneBits& at) const {
     return (at + (step & chosen)) & field;
   }
+  /** \return the steps to each ray's end */
+  MSO_INLINE LaneBits start(const Lanes& end, double begin, const ScanGrid::Field& along) {
+    using Ints = int __attribute__((vector_size(16)));
+    const int first = static_cast<int>(begin);
+    const Lanes length = end - begin;
+    const LaneBits isUp = length > 0,
+                   last = __builtin_convertvector(__builtin_convertvector(end, Ints), LaneBits);
+    const LaneBits moves = last != first;
+    const Lanes perBorder = 1.0 / Lanes(LaneBits(length) & INT64_MAX);
+    const Lanes toBorder = isUp ? first + 1 - begin + Lanes() : begin - first + Lanes();
+    next = moves ? toBorder * perBorder : HUGE_VAL + Lanes();
+    delta = Lanes(LaneBits(perBorder) & moves);
+    step = moves & (isUp ? along.up() + LaneBits() : along.down() + LaneBits());
+    return isUp ? last - first : first - last;
+  }
 };
 
 /** Progress of as many rays as there are lanes. What changes is copied, so that it stays in
@@ -180,7 +196,7 @@ struct RayProgress {
 };
 
 /** Follows twice as many rays as there are lanes: while one half waits for memory, the other goes
- * on. */
+ * on. They take about as many steps, so that few lanes wait for others. */
 class RayLanes {
  public:
   MSO_INLINE RayLanes(ScanGrid& grid, const Eigen::Array3d& begin)
@@ -193,77 +209,72 @@ class RayLanes {
   }
 
   MSO_INLINE void follow(const Eigen::Array3d* ends, std::size_t numRays) {
-    m_next = ends;
-    m_last = ends + numRays;
-    for (;;) {
-      refill();
-      const std::int64_t steps = *std::min_element(m_left, m_left + kNumRays);
-      if (steps > kIdle / 2) return;
-      advance(steps);
-      for (std::int64_t& left : m_left) left -= steps;
+    const std::vector<const Eigen::Array3d*> order = bySteps(ends, numRays);
+    for (std::size_t first = 0; first < order.size(); first += kNumRays) {
+      start(order.data() + first);
+      run();
     }
   }
 
  private:
-  static constexpr int kNumRays = 2 * kNumLanes;
+  static constexpr std::size_t kNumRays = 2 * kNumLanes;
   /** Neighbors in a scan would often be in the same byte at the same time, so that one waits for
-   * the other: each lane takes this many of them, one after the other. */
-  static constexpr std::ptrdiff_t kRaysAtATime = 128;
-  /** Steps left to a lane without a ray: more than all rays take. */
-  static constexpr std::int64_t kIdle = INT64_MAX;
+   * the other: among rays of as many steps, those that follow each other are so far apart. */
+  static constexpr std::size_t kApart = 16;
 
-  struct Part {
-    const Eigen::Array3d *next = nullptr, *end = nullptr;
-    std::ptrdiff_t size() const { return end - next; }
-  };
-
-  MSO_INLINE void refill() {
-    for (int lane = 0; lane < kNumRays; ++lane)
-      while (m_left[lane] == 0) startNext(lane);
-  }
-
-  /** Without a ray a lane stays in the voxel where all begin. */
-  MSO_INLINE void startNext(int lane) {
-    Part& part = m_parts[lane];
-    if (part.size() == 0) part = m_next == m_last ? halfOfAnother() : nextPart();
-    if (part.size() > 0) return start(lane, *part.next++);
-    start(lane, m_begin);
-    m_left[lane] = kIdle;
-  }
-
-  MSO_INLINE Part nextPart() {
-    const Part part{m_next, m_next + std::min(kRaysAtATime, m_last - m_next)};
-    m_next = part.end;
-    return part;
-  }
-
-  /** In the end lanes help each other, so that few are idle. */
-  MSO_INLINE Part halfOfAnother() {
-    Part& longest = *std::max_element(m_parts, m_parts + kNumRays,
-                                      [](const Part& a, const Part& b)
-                                          MSO_ALWAYS_INLINE { return a.size() < b.size(); });
-    const Part half{longest.end - (longest.size() + 1) / 2, longest.end};
-    longest.end = half.next;
-    return half;
-  }
-
-  MSO_INLINE void start(int lane, const Eigen::Array3d& end) {
-    m_left[lane] = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      AxisLanes& a = m_axes[lane / kNumLanes][axis];
-      const int at = lane % kNumLanes;
-      const double length = end[axis] - m_begin[axis];
-      const int first = m_first[axis], steps = std::abs(static_cast<int>(end[axis]) - first);
-      const double delta = 1.0 / std::fabs(length);
-      const double toBorder = length > 0 ? first + 1 - m_begin[axis] : m_begin[axis] - first;
-      a.next[at] = steps > 0 ? toBorder * delta : HUGE_VAL;
-      a.delta[at] = steps > 0 ? delta : 0;
-      a.position[at] = static_cast<std::int64_t>(m_grid.offsets(axis)[first]);
-      a.step[at] = steps == 0   ? 0
-                   : length > 0 ? m_grid.field(axis).up()
-                                : m_grid.field(axis).down();
-      m_left[lane] += steps;
+  /** The ends of rays, those with the fewest steps first. Before them are rays without any, so that
+   * all lanes have one. */
+  std::vector<const Eigen::Array3d*> bySteps(const Eigen::Array3d* ends,
+                                             std::size_t numRays) const {
+    const std::size_t none = (kNumRays - numRays % kNumRays) % kNumRays;
+    std::vector<std::size_t> steps(numRays), next(1, none);  // a counting sort
+    for (std::size_t i = 0; i < numRays; ++i) {
+      steps[i] = static_cast<std::size_t>((ends[i].cast<int>() - m_first).abs().sum());
+      if (next.size() < steps[i] + 2) next.resize(steps[i] + 2);
+      ++next[steps[i] + 1];
     }
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<const Eigen::Array3d*> order(none + numRays, &m_begin);
+    for (std::size_t first = 0; first < kApart; ++first)
+      for (std::size_t i = first; i < numRays; i += kApart) order[next[steps[i]]++] = ends + i;
+    return order;
+  }
+
+  MSO_INLINE void start(const Eigen::Array3d* const* ends) {
+    for (int half = 0; half < 2; ++half, ends += kNumLanes) {
+      m_left[half] = LaneBits();
+      for (int axis = 0; axis < 3; ++axis) {
+        const Lanes end = {(*ends[0])[axis], (*ends[1])[axis], (*ends[2])[axis], (*ends[3])[axis]};
+        m_left[half] += m_axes[half][axis].start(end, m_begin[axis], m_grid.field(axis));
+        m_axes[half][axis].position = partOfFirst(axis) + LaneBits();
+      }
+    }
+  }
+
+  std::int64_t partOfFirst(int axis) const {
+    return static_cast<std::int64_t>(m_grid.offsets(axis)[m_first[axis]]);
+  }
+
+  MSO_INLINE void run() {
+    std::int64_t left[kNumRays], done = 0;
+    std::memcpy(left, m_left, sizeof left);
+    for (const std::int64_t steps : left) {
+      if (steps == done) continue;
+      if (done > 0) park(done);
+      advance(steps - done);
+      done = steps;
+    }
+  }
+
+  /** Rays that took all their steps stay in the voxel where all begin. */
+  MSO_INLINE void park(std::int64_t done) {
+    for (int half = 0; half < 2; ++half)
+      for (int axis = 0; axis < 3; ++axis) {
+        const LaneBits goesOn = m_left[half] > done;
+        AxisLanes& a = m_axes[half][axis];
+        a.step &= goesOn;
+        a.position = goesOn ? a.position : partOfFirst(axis) + LaneBits();
+      }
   }
 
   /** All rays take so many steps. */
@@ -280,9 +291,7 @@ class RayLanes {
   Eigen::Array3d m_begin;
   Eigen::Array3i m_first;
   AxisLanes m_axes[2][3];
-  const Eigen::Array3d *m_next = nullptr, *m_last = nullptr;
-  Part m_parts[kNumRays];
-  std::int64_t m_left[kNumRays] = {};
+  LaneBits m_left[2];
 };
 
 }  // namespace
