@@ -329,8 +329,9 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   m_seconds += m_clock.secondsUntil(scan.timestamp);
   std::optional<Eigen::Isometry3d> T_odometry_robot;
   if (m_hasOdometry) T_odometry_robot = labeled_cloud::toEigen(T_map_robot);
-  semantic_slam::SensorScan seen{scan.cloud, labeled_cloud::toEigen(scan.T_robot_sensor)};
-  seen.times = scan.times;
+  semantic_slam::SensorScan seen{scan.withEmpty(), labeled_cloud::toEigen(scan.T_robot_sensor),
+                                 scan.emptyFrom, scan.times};
+  if (!seen.times.empty()) seen.times.resize(seen.cloud.size());
   const auto inserted = m_mapper->insert(seen, T_odometry_robot, m_seconds);
   if (!m_hasOdometry) T_map_robot = labeled_cloud::toMrpt(inserted.place.T_map_robot);
   m_clock.note(scan.timestamp);

@@ -183,7 +183,9 @@ SensorScan Sensors::read(const ros2::LaserScan& message) {
       message.range_max,
       {message.ranges._buffer, message.ranges._buffer + message.ranges._length}};
   SensorScan scan;
-  scan.cloud = cloudOf(raw, scan.times);
+  const bool withEmpty = m_converter.options().emptyCarves;
+  scan.cloud = cloudOf(raw, scan.times, withEmpty);
+  if (withEmpty) scan.emptyFrom = static_cast<double>(raw.mostRange);
   return scan;
 }
 
@@ -208,7 +210,8 @@ SensorScan Sensors::read(const ros2::Image& depth) {
     } catch (const std::exception& e) {
       m_complaints.say(m_hearsLabels.name() + ": points are without classes", e.what());
     }
-  return {std::move(m_converter.convert(scan)->cloud)};
+  const auto seen = m_converter.convert(scan);
+  return {seen->withEmpty(), Eigen::Isometry3d::Identity(), seen->emptyFrom};
 }
 
 }  // namespace semantic_map_ros2

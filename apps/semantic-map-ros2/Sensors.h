@@ -57,7 +57,7 @@ class Sensors {
   void addTransforms(const ros2::TFMessage& message, point_fields::Frames::Kind kind);
   bool hasLabels(ros2::Stamp stamp) const;
   semantic_slam::SensorScan read(const ros2::PointCloud2& message);
-  static semantic_slam::SensorScan read(const ros2::LaserScan& message);
+  semantic_slam::SensorScan read(const ros2::LaserScan& message);
   semantic_slam::SensorScan read(const ros2::Image& depth);
 
   const NodeOptions& m_options;

@@ -45,6 +45,7 @@ void expectSame(const CObservationLabeledCloud& a, const CObservationLabeledClou
   EXPECT_EQ(a.cloud.classes, b.cloud.classes);
   EXPECT_EQ(a.cloud.probabilities, b.cloud.probabilities);
   EXPECT_EQ(a.times, b.times);
+  EXPECT_EQ(a.emptyFrom, b.emptyFrom);
   ASSERT_EQ(a.cloud.size(), b.cloud.size());
   for (std::size_t i = 0; i < a.cloud.size(); ++i)  // bit by bit: NaNs come back as they were
     EXPECT_EQ(0, std::memcmp(a.cloud.points[i].data(), b.cloud.points[i].data(), 12));
@@ -65,6 +66,8 @@ TEST(CObservationLabeledCloud, streamsWithoutLossWhateverLabelsThereAre) {
   obs.cloud.probabilities = {0.25f, 0.75f, 0, 0, 1, 0};
   expectSame(obs, *readBack(streamed(obs)));
   obs.times = {0, 0.05f, -0.1f};
+  expectSame(obs, *readBack(streamed(obs)));
+  obs.emptyFrom = 25;
   expectSame(obs, *readBack(streamed(obs)));
   obs.cloud.probabilities.clear();
   obs.cloud.classes.clear();

@@ -196,6 +196,38 @@ TEST(LabeledClouds, pointsThatAreReturnsKeepTheirTimes) {
   EXPECT_EQ(convert(obs).times, (std::vector<float>{0.1f, -0.4f}));
 }
 
+TEST(EmptyBeams, endBeyondTheRangeThatTheObservationStatesIfTheyAreToCarve) {
+  CObservationLabeledCloud cloud;
+  cloud.cloud.points = {{1, 0, 0}, {0, 5, 0}, {0, 0, 0}, {2, 0, 0}};
+  cloud.cloud.classes = {3, 1, 1, 2};
+  cloud.emptyFrom = 5;
+  mrpt::obs::CObservation2DRangeScan laser;
+  laser.aperture = float(M_PI);
+  laser.maxRange = 5;
+  laser.resizeScan(4);
+  const float ranges[] = {1, 0, INFINITY, 3};  // the second one is lost
+  for (int i = 0; i < 4; ++i)
+    laser.setScanRange(i, ranges[i]), laser.setScanRangeValidity(i, i % 3 == 0);
+  ScanConverterOptions carving;
+  carving.emptyCarves = true;
+  for (const mrpt::obs::CObservation* observation :
+       std::initializer_list<const mrpt::obs::CObservation*>{&cloud, &laser}) {
+    const auto without = convert(*observation), with = convert(*observation, carving);
+    EXPECT_EQ(without.cloud.size(), 2u);
+    EXPECT_TRUE(without.empty.empty());
+    EXPECT_EQ(with.cloud.points, without.cloud.points);
+    EXPECT_EQ(with.emptyFrom, 5);
+    ASSERT_EQ(with.empty.size(), 1u);
+    EXPECT_GT(with.empty[0].norm(), 5);
+    const Vector3f towards =
+        observation == &cloud ? Vector3f(0, 1, 0) : Vector3f(cosf(M_PI / 6), sinf(M_PI / 6), 0);
+    EXPECT_LT((with.empty[0].normalized() - towards).norm(), 1e-5);
+  }
+  const auto both = convert(cloud, carving).withEmpty();
+  EXPECT_EQ(both.size(), 3u);
+  EXPECT_EQ(both.classes, (std::vector<ClassId>{3, 2, 0}));
+}
+
 TEST(UnlabeledClouds, laserScansLieInTheSensorsPlaneAsMrptItselfPutsThem) {
   for (const bool rightToLeft : {true, false}) {
     mrpt::obs::CObservation2DRangeScan obs;

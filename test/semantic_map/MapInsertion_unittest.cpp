@@ -71,6 +71,27 @@ void expectRefused(CSemanticOctoMap& map, const mrpt::obs::CObservation& observa
 
 }  // namespace
 
+TEST(MapInsertion, pixelsWithoutAReturnCarveUpToTheCamerasRangeOnlyIfAskedTo) {
+  auto scan = onePixel();
+  scan.maxRange = 3;
+  auto map = quietMap();
+  ASSERT_TRUE(map.insertObservation(scan));
+  EXPECT_EQ(map.tree().query(2.5, 0, 0).status, Status::Unknown);
+  map.clear();
+  map.insertionOptions.conversion.emptyCarves = true;
+  ASSERT_TRUE(map.insertObservation(scan));
+  EXPECT_EQ(map.tree().query(2.5, 0, 0).status, Status::Free);
+  EXPECT_EQ(map.tree().query(2.85, 0, 0).status, Status::Free);
+  int occupied = 0;
+  for (auto leaf = map.tree().begin_leafs(), end = map.tree().end_leafs(); leaf != end; ++leaf) {
+    occupied += map.tree().isNodeOccupied(*leaf);
+    EXPECT_LT(leaf.getCoordinate().norm(), 3.1);
+  }
+  EXPECT_EQ(occupied, 1);
+  scan.rangeImage.fill(0);
+  EXPECT_TRUE(map.insertObservation(scan)) << "nothing at all is near";
+}
+
 TEST(MapInsertion, pointsLandWhereTheirSensorSawThem) {
   auto labeled = labeledPoints({kPoint}, {2});
   mrpt::obs::CObservationPointCloud cloud;

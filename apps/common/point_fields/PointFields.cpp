@@ -74,6 +74,7 @@ void setRanges(const RawImage& image, CObservation3DRangeScan& scan) {
   scan.hasRangeImage = true;
   scan.range_is_depth = true;
   scan.rangeUnits = 0.001f;
+  scan.maxRange = 65.535f;  // nothing says how far the camera sees
   scan.rangeImage_setSize(rows, cols);
   for (int row = 0; row < rows; ++row)
     for (int col = 0; col < cols; ++col) {
@@ -308,15 +309,16 @@ LabeledCloud cloudOf(const RawCloud& raw, const std::string& classField, const C
   return cloud;
 }
 
-LabeledCloud cloudOf(const RawLaserScan& raw, std::vector<float>& times) {
+LabeledCloud cloudOf(const RawLaserScan& raw, std::vector<float>& times, bool withEmpty) {
   const bool hasTimes = raw.timeStep > 0 && std::isfinite(raw.timeStep);
   LabeledCloud cloud;
   times.clear();
   for (std::size_t i = 0; i < raw.ranges.size(); ++i) {
-    const float range = raw.ranges[i], step = static_cast<float>(i);
+    const bool isEmpty = withEmpty && raw.ranges[i] == INFINITY;
+    const float range = isEmpty ? 2 * raw.mostRange : raw.ranges[i], step = static_cast<float>(i);
     const float angle = raw.firstAngle + step * raw.angleStep;
     const bool isMet = range >= raw.leastRange && range <= raw.mostRange && std::isfinite(range);
-    if (!isMet || !std::isfinite(angle)) continue;
+    if (!(isMet || isEmpty) || !std::isfinite(angle)) continue;
     cloud.points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0f);
     if (hasTimes) times.push_back(step * raw.timeStep);
   }

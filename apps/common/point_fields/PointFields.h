@@ -98,8 +98,10 @@ struct RawLaserScan {
 };
 
 /** The points that its beams met, in its frame. \param times is set to when each was met, seconds
- * after the message's stamp; empty: all at once */
-semantic_types::LabeledCloud cloudOf(const RawLaserScan& raw, std::vector<float>& times);
+ * after the message's stamp; empty: all at once \param withEmpty beams that met nothing (infinite)
+ * have points beyond mostRange */
+semantic_types::LabeledCloud cloudOf(const RawLaserScan& raw, std::vector<float>& times,
+                                     bool withEmpty = false);
 
 /** Classes of a message's points or pixels by the numbers that they have; each number is looked up
  * once. */

@@ -87,6 +87,8 @@ Eigen::Isometry3d T_robot_camera(double pitchDegrees) {
 
 Eigen::Isometry3d T_robot_lidar() { return Eigen::Isometry3d(Eigen::Translation3d(0.1, 0, 1.4)); }
 
+constexpr double kRounded = 1 - 1e-6;  // a point at some range may be a little nearer
+
 /** \param emptyAt depth of pixels without a return; 0: these are left out */
 LabeledCloud cloudOf(const CameraFrame& frame, const CameraOptions& options, double emptyAt) {
   LabeledCloud cloud;
@@ -120,7 +122,7 @@ Observation SimulatedSensors::camera(const World& world, const Eigen::Isometry3d
   const CameraFrame frame =
       renderCamera(world, T_world_robot * seen.T_robot_sensor, options, {m_config.seed, m_frame});
   seen.cloud = cloudOf(frame, options, m_config.emptyCarves ? options.maxRange : 0);
-  if (m_config.emptyCarves) seen.emptyFrom = options.maxRange * (1 - 1e-6);  // floats are rounded
+  if (m_config.emptyCarves) seen.emptyFrom = kRounded * options.maxRange;
   if (m_keepOriginals)
     seen.original = synthetic_rawlog::rangeScan(frame, options, seen.T_robot_sensor);
   return seen;
@@ -129,10 +131,15 @@ Observation SimulatedSensors::camera(const World& world, const Eigen::Isometry3d
 Observation SimulatedSensors::lidar(const World& world, const Eigen::Isometry3d& T_world_robot) {
   Observation seen;
   seen.T_robot_sensor = T_robot_lidar();
-  seen.cloud = scanLidar(world, T_world_robot * seen.T_robot_sensor, m_config.lidar,
-                         {m_config.seed, m_frame});
-  if (m_keepOriginals)
-    seen.original = synthetic_rawlog::labeledCloud(seen.cloud, seen.T_robot_sensor);
+  synthetic_world::LidarOptions options = m_config.lidar;
+  options.keepEmpty = m_config.emptyCarves;
+  seen.cloud =
+      scanLidar(world, T_world_robot * seen.T_robot_sensor, options, {m_config.seed, m_frame});
+  if (m_config.emptyCarves) seen.emptyFrom = kRounded * options.maxRange;
+  if (!m_keepOriginals) return seen;
+  const auto original = synthetic_rawlog::labeledCloud(seen.cloud, seen.T_robot_sensor);
+  original->emptyFrom = static_cast<float>(seen.emptyFrom);
+  seen.original = original;
   return seen;
 }
 

@@ -26,7 +26,12 @@ namespace {
 static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float), "points are streamed as plain floats");
 
 /** What follows the number of points in the stream. */
-enum Content : std::uint8_t { kHasClasses = 1, kHasProbabilities = 2, kHasTimes = 4 };
+enum Content : std::uint8_t {
+  kHasClasses = 1,
+  kHasProbabilities = 2,
+  kHasTimes = 4,
+  kHasEmpty = 8
+};
 
 /** Reads COUNT values piece by piece: a corrupt count meets the end of the stream before it can
  * take more memory than there is data. */
@@ -84,6 +89,7 @@ void CObservationLabeledCloud::validate() const {
   if (!times.empty() && times.size() != n) refuse(perPoint(times.size(), " times for ", n));
   if (!std::all_of(times.begin(), times.end(), [](float t) { return std::isfinite(t); }))
     refuse("a point whose time is no number");
+  if (!(emptyFrom > 0)) refuse("no returns from " + std::to_string(emptyFrom) + " m on");
   if (classNames.size() > kMaxClasses) refuse(std::to_string(classNames.size()) + " class names");
   for (const std::string& name : classNames)
     if (const std::string shown = strict_files::printable(name); shown != name)
@@ -95,8 +101,10 @@ void CObservationLabeledCloud::validate() const {
            std::to_string(limit));
 }
 
-/** Without times it is what readers of version 0 know. */
-std::uint8_t CObservationLabeledCloud::serializeGetVersion() const { return times.empty() ? 0 : 1; }
+/** The least version whose readers know all of it. */
+std::uint8_t CObservationLabeledCloud::serializeGetVersion() const {
+  return std::isfinite(emptyFrom) ? 2 : times.empty() ? 0 : 1;
+}
 
 void CObservationLabeledCloud::serializeTo(CArchive& out) const {
   validate();
@@ -109,7 +117,9 @@ void CObservationLabeledCloud::serializeTo(CArchive& out) const {
   out.WriteAs<std::uint32_t>(n);
   out.WriteAs<std::uint8_t>((cloud.classes.empty() ? 0 : kHasClasses) |
                             (cloud.probabilities.empty() ? 0 : kHasProbabilities) |
-                            (times.empty() ? 0 : kHasTimes));
+                            (times.empty() ? 0 : kHasTimes) |
+                            (std::isfinite(emptyFrom) ? kHasEmpty : 0));
+  if (std::isfinite(emptyFrom)) out << emptyFrom;
   writeValues(out, reinterpret_cast<const float*>(cloud.points.data()), 3 * n);
   writeValues(out, times.data(), times.size());
   writeValues(out, cloud.classes.data(), cloud.classes.size());
@@ -119,7 +129,7 @@ void CObservationLabeledCloud::serializeTo(CArchive& out) const {
 }
 
 void CObservationLabeledCloud::serializeFrom(CArchive& in, std::uint8_t version) {
-  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   CObservationLabeledCloud read;
   in >> read.timestamp >> read.sensorPose;
   read.sensorLabel = readText(in);
@@ -128,6 +138,7 @@ void CObservationLabeledCloud::serializeFrom(CArchive& in, std::uint8_t version)
 
   const std::size_t n = in.ReadAs<std::uint32_t>();
   const auto content = in.ReadAs<std::uint8_t>();
+  if (version > 1 && content & kHasEmpty) in >> read.emptyFrom;
   read.cloud.points = readValues<Eigen::Vector3f>(in, n);
   if (content & kHasTimes) read.times = readValues<float>(in, n);
   if (content & kHasClasses) read.cloud.classes = readValues<ClassId>(in, n);

@@ -42,11 +42,13 @@ NamedCloud cloudOf(const CObservation2DRangeScan& scan) {
   const std::size_t beams = scan.getScanSize();
   const double turn = scan.rightToLeft ? 1 : -1;
   NamedCloud named;
+  named.emptyFrom = scan.maxRange;
   Points& points = named.cloud.points;
   points.assign(beams, Eigen::Vector3f::Zero());
   for (std::size_t i = 0; i < beams; ++i) {
-    const double range = scan.getScanRange(i);
-    if (!scan.getScanRangeValidity(i) || range >= scan.maxRange) continue;
+    const bool isEmpty = scan.getScanRange(i) >= scan.maxRange;
+    const double range = isEmpty ? 2 * scan.maxRange : scan.getScanRange(i);
+    if (!isEmpty && !scan.getScanRangeValidity(i)) continue;
     const double share = beams == 1 ? 0 : double(i) / double(beams - 1) - 0.5;
     const double angle = turn * scan.aperture * share;
     points[i] = Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), 0).cast<float>();
@@ -99,7 +101,8 @@ NamedCloud cloudOf(const CObservationPointCloud& observation) {
 
 NamedCloud cloudOf(const CObservationLabeledCloud& observation) {
   observation.validate();
-  return {observation.cloud, observation.classNames, {}, {}, observation.times};
+  return {observation.cloud, observation.classNames, {}, {},
+          observation.times, observation.emptyFrom};
 }
 
 NamedCloud cloudOf(const CObservationVelodyneScan& observation) {

@@ -80,6 +80,22 @@ std::vector<std::size_t> choosePixels(const PointGrid& grid, int decimation) {
   return pixels;
 }
 
+/** Beyond the range that an observation states; how far does not matter. */
+constexpr float kBeyond = 2;
+
+/** Of each block of pixels the first one, if it has no return. */
+std::vector<Eigen::Vector3f> emptyPixels(const CObservation3DRangeScan& observation,
+                                         const PixelRays& rays, int decimation) {
+  std::vector<Eigen::Vector3f> empty;
+  for (int row = 0; row < rays.rows(); row += decimation)
+    for (int col = 0; col < rays.cols(); col += decimation) {
+      if (observation.rangeImage(row, col) > 0) continue;
+      const Eigen::Vector2f& ray = rays[std::size_t(row) * rays.cols() + col];
+      empty.push_back(kBeyond * observation.maxRange * Eigen::Vector3f(1, ray.x(), ray.y()));
+    }
+  return empty;
+}
+
 }  // namespace
 
 void ScanConverterOptions::describe(strict_files::OptionList& list) {
@@ -90,6 +106,9 @@ void ScanConverterOptions::describe(strict_files::OptionList& list) {
   list.add("flying_pixel_threshold", flyingPixelThreshold, "", atLeast(0).below(1),
            "depth images: leaves out pixels that hang in the air at depth edges, farther from both "
            "sides than this share of their depth (0.02); 0: keeps all");
+  list.add("empty_carves", emptyCarves, "",
+           "a pixel or beam without a return says that nothing is within the range that the "
+           "observation states; not for sensors that lose returns");
   labels.describe(list);
 }
 
@@ -155,6 +174,18 @@ void ScanConverter::addRangeScan(const CObservation3DRangeScan& observation, Lab
   scan.cloud.points.reserve(pixels.size());
   for (const std::size_t pixel : pixels) scan.cloud.points.push_back(grid.points[pixel]);
   if (labels) addLabels(observation, grid, pixels, std::move(*labels), scan);
+  if (!m_options.emptyCarves || !observation.hasRangeImage) return;
+  scan.empty = emptyPixels(observation, *m_rays, m_options.decimation);
+  scan.emptyFrom = static_cast<double>(observation.maxRange);
+}
+
+semantic_types::LabeledCloud LabeledScan::withEmpty() const {
+  semantic_types::LabeledCloud all = cloud;
+  all.points.insert(all.points.end(), empty.begin(), empty.end());
+  if (!cloud.classes.empty()) all.classes.resize(all.size(), kNoClass);
+  if (!cloud.probabilities.empty())
+    all.probabilities.resize(cloud.probabilities.size() / cloud.size() * all.size(), 0);
+  return all;
 }
 
 void LabeledScan::countLabels() {
@@ -263,6 +294,10 @@ void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
   to.points.reserve(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (!PointGrid::isReturn(from.points[i])) continue;
+    if (static_cast<double>(from.points[i].norm()) >= named.emptyFrom) {
+      if (m_options.emptyCarves) scan.empty.push_back(kBeyond * from.points[i]);
+      continue;
+    }
     to.points.push_back(from.points[i]);
     if (!named.times.empty()) scan.times.push_back(named.times.at(i));
     if (!from.classes.empty()) to.classes.push_back(translate(from.classes.at(i)));
@@ -270,6 +305,7 @@ void ScanConverter::addNamedCloud(NamedCloud named, LabeledScan& scan) const {
       appendTranslated(&from.probabilities[i * classes], classes, translate, m_table.size(),
                        to.probabilities);
   }
+  if (m_options.emptyCarves) scan.emptyFrom = named.emptyFrom;
   scan.counts.invalid = from.size() - to.size();
   if (!from.classes.empty() || classes > 0) m_options.labels.apply(m_table.size(), {}, to);
 }

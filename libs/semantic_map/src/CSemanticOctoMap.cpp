@@ -142,14 +142,18 @@ void CSemanticOctoMap::insertAccepted(const mrpt::obs::CObservation& observation
 
 semantic_octree::InsertionReport CSemanticOctoMap::insertScan(const LabeledScan& scan,
                                                               const CPose3D& T_map_robot) {
-  if (scan.cloud.empty())
+  if (scan.cloud.empty() && scan.empty.empty())
     throw std::invalid_argument("no point with a usable range (" +
                                 std::to_string(scan.counts.invalid) + " without)");
   const auto T_map_sensor = sensorPose(T_map_robot, scan.T_robot_sensor);
   useFilterOfOptions();
   m_observationClock.setMaxGap(insertionOptions.maxGap);
-  const auto report = m_tree.insert(scan.cloud, T_map_sensor, insertionOptions.scan,
-                                    m_observationClock.secondsUntil(scan.timestamp));
+  const double seconds = m_observationClock.secondsUntil(scan.timestamp);
+  auto options = insertionOptions.scan;
+  if (!scan.empty.empty() && !(options.maxRange > 0 && options.maxRange < scan.emptyFrom))
+    options.maxRange = scan.emptyFrom;
+  const auto report = m_tree.insert(scan.empty.empty() ? scan.cloud : scan.withEmpty(),
+                                    T_map_sensor, options, seconds);
   m_observationClock.note(scan.timestamp);
   return report;
 }

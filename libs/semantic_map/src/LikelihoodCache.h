@@ -35,6 +35,7 @@ struct CachedConverter {
     const auto &labels = o.labels, &known = options.labels;
     return o.decimation == options.decimation &&
            o.flyingPixelThreshold == options.flyingPixelThreshold &&
+           o.emptyCarves == options.emptyCarves &&
            o.occlusionParallax == options.occlusionParallax && labels.kind == known.kind &&
            labels.minConfidence == known.minConfidence && labels.confusion == known.confusion &&
            t == table;

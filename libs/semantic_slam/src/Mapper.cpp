@@ -95,10 +95,14 @@ auto Mapper::insert(const std::vector<SensorScan>& seen, const Place& place, dou
       const SensorScan straight =
           scan.times.empty() ? SensorScan() : deskewed(scan, place.velocity);
       const LabeledCloud& cloud = (scan.times.empty() ? scan : straight).cloud;
+      semantic_octree::InsertionOptions options = m_options.insertion;
+      if (std::isfinite(scan.emptyFrom) &&
+          !(options.maxRange > 0 && options.maxRange < scan.emptyFrom))
+        options.maxRange = scan.emptyFrom;
       inserted.scans.push_back(
-          insertAt(place, cloud, scan.T_robot_sensor, m_options.insertion, secondsUntil(seconds)));
+          insertAt(place, cloud, scan.T_robot_sensor, options, secondsUntil(seconds)));
       m_agedAt = std::max(seconds, m_agedAt.value_or(seconds));
-      m_calibrator.add(cloud, place.T_map_robot * scan.T_robot_sensor, m_options.insertion);
+      m_calibrator.add(cloud, place.T_map_robot * scan.T_robot_sensor, options);
       if (++m_numScans < m_calibrateAt) continue;
       calibrate();
       m_calibrateAt *= 2;

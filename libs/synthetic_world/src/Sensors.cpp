@@ -83,6 +83,10 @@ LabeledCloud scanLidar(const World& world, const LidarPath& path, const LidarOpt
       const Eigen::Vector3d direction = T_world_lidar.linear() * beam;
       const double farthest = options.maxRange + 5 * options.noise.range;
       auto hit = world.castRay(T_world_lidar.translation(), direction, farthest);
+      if (!hit && options.keepEmpty) {
+        cloud.points.push_back((options.maxRange * beam).cast<float>());
+        cloud.classes.push_back(kNoClass);
+      }
       if (!hit) continue;
       const auto ray = static_cast<std::uint64_t>(ring) * options.columns + column;
       Random random = Random::ofStream(seed.seed, kLidarStream + 4 * seed.frame, ray);

@@ -5,6 +5,7 @@
 #include <mrpt_compat/Release.h>
 #include <semantic_types/LabeledCloud.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ class CObservationLabeledCloud : public mrpt::obs::CObservation {
   /** When each point was taken, seconds after `timestamp`; empty: all then, or nobody knows. 4 more
    * bytes per point in rawlogs. */
   std::vector<float> times;
+  /** Points this far from the sensor or farther stand for beams without a return: nothing is
+   * nearer.
+   * m */
+  float emptyFrom = std::numeric_limits<float>::infinity();
   /** T_robot_sensor. */
   mrpt::poses::CPose3D sensorPose;
   /** Name of class i at [i - 1], for people and to tell class tables apart. May be empty. */
@@ -30,7 +35,7 @@ class CObservationLabeledCloud : public mrpt::obs::CObservation {
 
   /** \throw std::invalid_argument naming what does not fit: numbers of points, classes,
    * probabilities and times, times that are not finite, class ids above 254 or without a name
-   * although there are names. */
+   * although there are names, a range without returns that is not above 0. */
   void validate() const;
 
 #if MSO_MRPT_AT_LEAST(3, 0, 0)

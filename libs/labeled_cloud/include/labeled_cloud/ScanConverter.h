@@ -12,6 +12,7 @@
 #include <semantic_types/LabeledCloud.h>
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +47,10 @@ struct LabeledScan {
   semantic_types::LabeledCloud cloud;
   /** When each point was taken, seconds after `timestamp`; empty: nobody knows. */
   std::vector<float> times;
+  /** Where beams without a return would end: beyond emptyFrom, m. Sensor's frame; only with
+   * ScanConverterOptions::emptyCarves. */
+  std::vector<Eigen::Vector3f> empty;
+  double emptyFrom = std::numeric_limits<double>::infinity();
   mrpt::poses::CPose3D T_robot_sensor;
   mrpt::Clock::time_point timestamp;
   std::string sensorLabel;
@@ -55,6 +60,9 @@ struct LabeledScan {
   /** Where the labels come from, if that was asked for. */
   std::vector<LabeledPicture> pictures;
 
+  /** The points, and those of `empty` without a class: with emptyFrom as the largest range these
+   * only carve. */
+  semantic_types::LabeledCloud withEmpty() const;
   /** Brings counts.labeled up to date. */
   void countLabels();
 };
@@ -71,6 +79,8 @@ struct NamedCloud {
   std::vector<std::uint32_t> rawIds = {};
   /** As LabeledScan::times. */
   std::vector<float> times = {};
+  /** As CObservationLabeledCloud::emptyFrom. */
+  double emptyFrom = std::numeric_limits<double>::infinity();
 };
 
 /** A raw id that a field of points or pixels has as a number.
@@ -112,6 +122,9 @@ struct ScanConverterOptions {
   /** Depth images with labels in a color image of another camera, see visiblePixels(). Without a
    * name in files. */
   double occlusionParallax = kOcclusionParallax;
+  /** Depth images, plane scanners and labeled clouds: beams without a return carve up to the range
+   * that the observation states, beyond which nothing is seen. */
+  bool emptyCarves = false;
   /** What the labels say. */
   LabelModel labels;
 
