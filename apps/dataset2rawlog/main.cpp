@@ -1,6 +1,5 @@
 #include <functional>
 #include <iomanip>
-#include <ostream>
 
 #include "Application.h"
 #include "Conversion.h"

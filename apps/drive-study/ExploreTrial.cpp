@@ -20,7 +20,6 @@ using semantic_driving::View;
 using semantic_driving::ViewStrategy;
 using semantic_octree::SemanticOcTree;
 using semantic_planning::SemanticPlanner;
-using semantic_types::ClassId;
 using synthetic_world::World;
 
 namespace {

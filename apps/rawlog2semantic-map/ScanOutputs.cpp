@@ -11,7 +11,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <stdexcept>
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <iomanip>
 #include <optional>
-#include <ostream>
 #include <utility>
 
 #include "Application.h"

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
-#include <ostream>
 #include <sstream>
 #include <string>
 #include <vector>

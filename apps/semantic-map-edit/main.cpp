@@ -10,7 +10,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <ostream>
 #include <stdexcept>
 
 #include "Application.h"

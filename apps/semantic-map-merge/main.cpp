@@ -9,7 +9,6 @@
 #include <cmath>
 #include <deque>
 #include <optional>
-#include <ostream>
 
 #include "Application.h"
 #include "MapPoses.h"

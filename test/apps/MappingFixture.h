@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <semantic_octree/TreeFile.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "RunProgram.h"

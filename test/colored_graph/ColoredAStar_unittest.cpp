@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <set>
-#include <utility>
 
 #include "Oracles.h"
 #include "PlaneGraph.h"
@@ -141,49 +140,6 @@ TEST(ColoredAStar, pathDoesNotDependOnTheOrderOfInsertion) {
     std::shuffle(lines.begin(), lines.end(), std::mt19937(*rc::gen::arbitrary<unsigned>()));
     RC_ASSERT(solve() == first);
   }));
-}
-
-TEST(ColoredAStar, staysExactWhereCostsLeaveTheirFewBits) {
-  int found = 0;
-  for (unsigned seed = 0; seed < 2000; ++seed) {
-    PlaneGraph plane(seed, 4);
-    ColoredGraph graph(PlaneGraph::kClasses);
-    const int vertices = 4 + plane.below(12);
-    for (int v = 0; v < vertices; ++v) graph.addVertex(plane.randomClass());
-    const int digits = 20 + plane.below(30);
-    for (int i = 0; i < 3 * vertices; ++i) {
-      const auto a = static_cast<VertexId>(plane.below(vertices));
-      const auto b = static_cast<VertexId>(plane.below(vertices));
-      const Length length = (Length{1} << (plane.below(digits))) + plane.below(3);
-      if (a != b) graph.addEdge(a, b, {{plane.randomClass(), length}}, {0, Length{1} << digits});
-    }
-    for (CostModel& model : allModels(ClassOrder(5, {{0}, {1, 4}, {2, 3}}))) {
-      const auto expected = oracles::tupleDijkstra(graph, model, 0, 1);
-      ASSERT_EQ(costOf(findColoredPath(graph, 0, 1, model)), expected) << "seed " << seed;
-      found += expected.has_value();
-    }
-  }
-  EXPECT_GT(found, 20000);
-}
-
-TEST(ColoredAStar, staysExactOnPathsOfVeryManyEdges) {
-  ColoredGraph graph(1);
-  const VertexId count = (1 << 20) + 10;
-  for (VertexId v = 0; v < count; ++v) graph.addVertex(0);
-  for (VertexId v = 1; v < count; ++v) graph.addEdge(v - 1, v, {{0, 1}});
-  const PathResult result = findColoredPath(graph, 0, count - 1, {ClassOrder(1, {{0}})});
-  EXPECT_EQ(result.cost, Tuple{count - 1});
-  EXPECT_EQ(result.edges.size(), count - 1);
-}
-
-TEST(ColoredAStar, reachesAllNeighborsOfAVertexWithVeryManyEdges) {
-  ColoredGraph graph(1);
-  const VertexId count = 20000;
-  for (VertexId v = 0; v <= count; ++v) graph.addVertex(0);
-  for (VertexId v = 1; v <= count; ++v) graph.addEdge(v % 2 ? 0 : v, v % 2 ? v : 0, {{0, v}});
-  const CostModel model{ClassOrder(1, {{0}})};
-  for (const VertexId v : {1u, 4095u, 4096u, 4097u, 19999u, 20000u})
-    EXPECT_EQ(findColoredPath(graph, v, 2, model).cost, Tuple{v + 2});
 }
 
 TEST(ColoredAStar, boundsSaveExpansions) {

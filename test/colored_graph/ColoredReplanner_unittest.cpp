@@ -2,8 +2,6 @@
 #include <colored_graph/ColoredReplanner.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "Oracles.h"
 #include "PlaneGraph.h"
 
@@ -101,33 +99,6 @@ TEST(ColoredReplanner, equalsScratchAfterEachOfFiveThousandChangesAlsoWithAMovin
   RecordProperty("expansionsRelativeToScratch", std::to_string(ratio));
   EXPECT_LT(ratio, 0.7);
   EXPECT_GT(tally.found, 3000u);
-}
-
-TEST(ColoredReplanner, savesExpansionsEvenWhenManyEdgesChangeAtOnce) {
-  Tally tally;
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    PlaneGraph plane = town(seed);
-    if (seed % 2) plane.addTolls();
-    const CostModel model{ClassOrder(PlaneGraph::kClasses, {{0}, {1}, {2}, {3}, {4}})};
-    const SearchOptions options = boundedBy(plane);
-    ColoredReplanner replanner(plane.graph, 0, 1, model, options);
-    replanner.solve();
-    for (int round = 0; round < 20; ++round) {
-      for (std::size_t i = 0; i < plane.graph.edgeCount() * 6 / 100; ++i) {
-        const EdgeId e = plane.randomEdge();
-        plane.graph.setProfile(e,
-                               plane.randomProfile(plane.graph.edge(e).a, plane.graph.edge(e).b));
-      }
-      const PathResult result = replanner.solve();
-      const PathResult scratch = findColoredPath(plane.graph, 0, 1, model, options);
-      ASSERT_EQ(result.edges, scratch.edges) << "seed " << seed << ", round " << round;
-      tally.incremental += result.statistics.expansions;
-      tally.scratch += scratch.statistics.expansions;
-    }
-  }
-  const double ratio = double(tally.incremental) / double(tally.scratch);
-  RecordProperty("expansionsRelativeToScratch", std::to_string(ratio));
-  EXPECT_LT(ratio, 0.7);
 }
 
 TEST(ColoredReplanner, staysExactWithLazyEdgesThatChange) {

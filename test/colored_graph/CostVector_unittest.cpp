@@ -31,9 +31,6 @@ TEST(CostVector, isStrictlyAndTotallyOrderedLikeASequence) {
   EXPECT_TRUE(rc::check([] {
     const auto l = parts(), r = parts();
     RC_ASSERT((make(l) < make(r)) == (l < r));
-    RC_ASSERT((make(l) > make(r)) == (l > r));
-    RC_ASSERT((make(l) <= make(r)) == (l <= r));
-    RC_ASSERT((make(l) >= make(r)) == (l >= r));
     RC_ASSERT((make(l) == make(r)) == (l == r));
     RC_ASSERT((make(l) != make(r)) == (l != r));
   }));
@@ -51,7 +48,7 @@ TEST(CostVector, addsPartByPartAndOverflowsToInfinity) {
     const Cost sum = make(l) + make(r);
     RC_ASSERT(sum == (overflows ? Cost::infinite() : make(sums)));
     RC_ASSERT(sum == make(r) + make(l));
-    RC_ASSERT(sum >= make(l));
+    RC_ASSERT(!(sum < make(l)));
   }));
 }
 

@@ -2,7 +2,6 @@
 #include <colored_graph/ColoredAStar.h>
 #include <colored_graph/CostModel.h>
 
-#include <algorithm>
 #include <optional>
 #include <set>
 #include <utility>

@@ -2,7 +2,6 @@
 #include <colored_graph/ColoredReplanner.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <stdexcept>
 
 #include "EdgeChanges.h"

@@ -10,7 +10,6 @@
 
 #include <cstring>
 #include <random>
-#include <stdexcept>
 
 #include "RawlogFile.h"
 #include "TemporaryFolder.h"

@@ -3,7 +3,6 @@
 #include <octomap/OcTree.h>
 
 #include <algorithm>
-#include <set>
 
 #include "Voxels.h"
 

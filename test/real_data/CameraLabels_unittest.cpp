@@ -7,7 +7,6 @@
 #include <semantic_types/ClassTable.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "CountedLabels.h"
 #include "DataSets.h"

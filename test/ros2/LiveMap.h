@@ -1,7 +1,6 @@
 #pragma once
 #include <semantic_octree/SemanticOcTree.h>
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>

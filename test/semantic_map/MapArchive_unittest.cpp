@@ -2,7 +2,6 @@
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/maps/CMultiMetricMap.h>
-#include <mrpt_compat/Drawing.h>
 
 #include "ArchiveStream.h"
 #include "SmallMaps.h"

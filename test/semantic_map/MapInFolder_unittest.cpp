@@ -5,7 +5,6 @@
 #include <mrpt/maps/CMultiMetricMap.h>
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
-#include <mrpt_compat/Drawing.h>
 #include <semantic_octree/TreeFile.h>
 #include <sys/resource.h>
 #include <atomic>
@@ -16,7 +15,6 @@
 
 using mrpt::poses::CPose3D;
 using semantic_map::CSemanticOctoMap;
-using semantic_octree::MapFolder;
 
 namespace {
 

@@ -9,7 +9,6 @@
 #include <semantic_types/ClassTable.h>
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "SmallMaps.h"

@@ -3,7 +3,6 @@
 #include <semantic_octree/LabelEvidence.h>
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 
 #include "ExactFilter.h"

@@ -114,41 +114,7 @@ TEST_F(RelaxedSearch, findsTheOnlyWayAroundTheWorstClassAndThePathFollows) {
   order = order.strict();
   EXPECT_EQ(meters(guide(), PaintedWorld::Mud), 0);
   options.shorten = true;
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    options.roadmap.seed = seed;
-    EXPECT_LE(PlannerTest::meters(plan(), PaintedWorld::Mud), 0.2);
-  }
-}
-
-TEST_F(RelaxedSearch, aWayAroundThatLeavesTheBufferIsTakenForItsClasses) {
-  world.floor(-15, 15, -15, 15, PaintedWorld::Mud);
-  world.floor(-15, -12, -15, 15, PaintedWorld::Road);
-  world.floor(-15, 15, 12, 15, PaintedWorld::Road);
-  world.floor(-15, 15, -15, -12, PaintedWorld::Road);
-  world.floor(12, 15, -15, 15, PaintedWorld::Road);
-  world.floor(-2, 2, -15, -11, PaintedWorld::Mud);  // straight on
-  options.shorten = true;
-  options.roadmap.buffer = 15;
-  options.strict = true;
-  start = {-10, -13.5, 0};
-  goal = {10, -13.5, 0};
-  const PlanResult found = plan();
-  expectDrivable(found);
-  EXPECT_LE(meters(found.path, PaintedWorld::Mud), 0.2);
-}
-
-TEST_F(RelaxedSearch, theOnlyWayAroundIsFoundHoweverFarOff) {
-  world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
-  world.box(-1, -0.6, -15, 12, 0, 2, PaintedWorld::Wall);
-  options.shorten = true;
-  start = {-5, -13, 0};
-  goal = {5, -13, 0};
-  for (const double buffer : {0.0, 3.0, std::numeric_limits<double>::infinity()}) {
-    options.roadmap.buffer = buffer;
-    const PlanResult found = plan();
-    expectDrivable(found);
-    EXPECT_GT(found.length, 45) << buffer;
-  }
+  EXPECT_LE(PlannerTest::meters(plan(), PaintedWorld::Mud), 0.2);
 }
 
 TEST_F(RelaxedSearch, anInfiniteBufferTakesAllOfTheMapWhateverTheGraph) {
@@ -170,17 +136,6 @@ TEST_F(RelaxedSearch, tellsItsPriceWhichIsDrivingAndARateForEachMeterOfARank) {
   goal = {10, 0.1, 0};
   order = order.withRates({5, 20, 30});
   EXPECT_NEAR(search().price, 20 + 2 * 5 + 1 * 20, 0.21 * 25);
-}
-
-TEST_F(RelaxedSearch, aDetourIsTakenIfItIsShorterThanWhatTheRateOfTheWaySparedCounts) {
-  paintCorner();
-  const double detour = 23 + 23 - std::hypot(goal.x - start.x, goal.y - start.y);
-  const double grass = std::hypot(goal.x - start.x, goal.y - start.y) - 3 * M_SQRT2;
-  for (const double factor : {0.8, 1.25}) {
-    const double rate = factor * detour / grass;
-    order = order.withRates({rate, 50, 100});
-    EXPECT_EQ(meters(guide(), PaintedWorld::Grass) < 1, factor > 1) << rate;
-  }
 }
 
 TEST_F(RelaxedSearch, withoutAWayTellsTheNearestPlaceThatCanBeReached) {

@@ -5,7 +5,6 @@
 
 using namespace semantic_planning;
 using colored_graph::EdgeId;
-using colored_graph::EdgeState;
 
 namespace {
 

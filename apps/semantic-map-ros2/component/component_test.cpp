@@ -8,7 +8,6 @@
 #include <class_loader/class_loader.hpp>
 
 #include <cmath>
-#include <filesystem>
 #include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
 #include <iostream>
 #include <octomap_msgs/msg/octomap.hpp>

@@ -40,9 +40,6 @@ class CostVector {
   friend bool operator==(const CostVector& l, const CostVector& r) { return compare(l, r) == 0; }
   friend bool operator!=(const CostVector& l, const CostVector& r) { return compare(l, r) != 0; }
   friend bool operator<(const CostVector& l, const CostVector& r) { return compare(l, r) < 0; }
-  friend bool operator>(const CostVector& l, const CostVector& r) { return compare(l, r) > 0; }
-  friend bool operator<=(const CostVector& l, const CostVector& r) { return compare(l, r) <= 0; }
-  friend bool operator>=(const CostVector& l, const CostVector& r) { return compare(l, r) >= 0; }
 
   friend CostVector operator+(const CostVector& l, const CostVector& r) {
     CostVector sum;

@@ -283,7 +283,7 @@ class ColoredReplanner::Search : public Impl {
   const SearchOptions m_options;
   const EdgeCosts<N> m_costs;
   std::vector<Node> m_nodes;
-  VertexHeap<Key> m_queue;
+  VertexQueue<Key> m_queue;
   std::uint64_t m_seen = 0;
   bool m_startMoved = false;
   unsigned m_startNumber = 1;

@@ -5,17 +5,16 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
-#include <utility>
+#include <set>
 #include <vector>
 
 /** \file What a search does with a graph, whatever its costs are. */
 
 namespace colored_graph {
 
-/** Vertices by key, smallest first, each at most once; equal keys in the order of their ids. A
- * binary heap that knows where each vertex stands, so that its key can be changed. */
+/** Vertices by key, smallest first, each at most once; equal keys in the order of their ids. */
 template <class Key>
-class VertexHeap {
+class VertexQueue {
  public:
   struct Entry {
     Key key;
@@ -24,77 +23,37 @@ class VertexHeap {
   };
 
   bool empty() const { return m_entries.empty(); }
-  const Entry& top() const { return m_entries.front(); }
+  const Entry& top() const { return *m_entries.begin(); }
 
   void reset(std::size_t vertices) {
     m_entries.clear();
-    m_places.assign(vertices, kAbsent);
+    m_keys.assign(vertices, std::nullopt);
   }
-  void growTo(std::size_t vertices) {
-    if (vertices > m_places.size()) m_places.resize(vertices, kAbsent);
-  }
+  void growTo(std::size_t vertices) { m_keys.resize(vertices); }
 
   /** Inserts the vertex or changes its key. */
   void set(VertexId v, const Key& key) {
-    std::size_t place = m_places[v];
-    if (place == kAbsent) {
-      place = m_entries.size();
-      m_entries.push_back({key, v});
-    }
-    m_entries[place].key = key;
-    settle(place);
+    remove(v);
+    m_keys[v] = key;
+    m_entries.insert({key, v});
   }
-
   void remove(VertexId v) {
-    const std::size_t place = m_places[v];
-    if (place == kAbsent) return;
-    m_places[v] = kAbsent;
-    const Entry last = m_entries.back();
-    m_entries.pop_back();
-    if (place == m_entries.size()) return;
-    m_entries[place] = last;
-    settle(place);
+    if (m_keys[v]) m_entries.erase({*m_keys[v], v});
+    m_keys[v].reset();
   }
 
   /** Asks keyOf(vertex) for every key again. */
   template <class KeyOf>
   void rekey(KeyOf keyOf) {
-    for (Entry& entry : m_entries) entry.key = keyOf(entry.vertex);
-    for (std::size_t place = m_entries.size(); place-- > 0;) sink(place);
+    for (const Entry& entry : std::exchange(m_entries, {})) {
+      m_keys[entry.vertex].reset();
+      set(entry.vertex, keyOf(entry.vertex));
+    }
   }
 
  private:
-  static constexpr std::size_t kAbsent = ~std::size_t{0};
-
-  void settle(std::size_t place) { sink(rise(place)); }
-
-  std::size_t rise(std::size_t place) {
-    const Entry entry = m_entries[place];
-    while (place > 0 && entry < m_entries[(place - 1) / 2]) {
-      put(place, m_entries[(place - 1) / 2]);
-      place = (place - 1) / 2;
-    }
-    put(place, entry);
-    return place;
-  }
-
-  void sink(std::size_t place) {
-    const Entry entry = m_entries[place];
-    for (std::size_t child; (child = 2 * place + 1) < m_entries.size(); place = child) {
-      if (child + 1 < m_entries.size() && m_entries[child + 1] < m_entries[child]) ++child;
-      if (!(m_entries[child] < entry)) break;
-      put(place, m_entries[child]);
-    }
-    put(place, entry);
-  }
-
-  void put(std::size_t place, const Entry& entry) {
-    m_entries[place] = entry;
-    m_places[entry.vertex] = place;
-  }
-
-  std::vector<Entry> m_entries;
-  std::vector<std::size_t> m_places;
+  std::set<Entry> m_entries;
+  std::vector<std::optional<Key>> m_keys;  ///< by vertex; none: absent
 };
 
 /** Whether a search should stop. */

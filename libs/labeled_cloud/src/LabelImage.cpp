@@ -6,7 +6,6 @@
 #include <mrpt/obs/CObservationImage.h>
 #include <opencv2/core.hpp>
 
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <unordered_map>

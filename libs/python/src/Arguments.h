@@ -6,7 +6,6 @@
 #include <strict_files/OptionList.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <cstring>
 #include <memory>
 #include <optional>

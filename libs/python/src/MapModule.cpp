@@ -7,7 +7,6 @@
 #include <strict_files/OutputFiles.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>

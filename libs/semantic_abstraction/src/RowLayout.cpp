@@ -103,7 +103,6 @@ MSO_VECTORIZED void binaryEntropies(const double* p, int n, double* h) {
 
 namespace {
 
-using tree_abstraction::AbstractionWeights;
 using tree_abstraction::TermSet;
 
 /** Unknown as a class of its own is class K + 1, which no term's group names. */

@@ -10,10 +10,7 @@
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
-using semantic_planning::PathPoint;
-using semantic_planning::PlanResult;
-using semantic_planning::PlanStatus;
-using semantic_planning::SemanticPlanner;
+using namespace semantic_planning;
 
 namespace {
 

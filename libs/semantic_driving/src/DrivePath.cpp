@@ -10,7 +10,7 @@
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
-using semantic_planning::PathPoint;
+using namespace semantic_planning;
 
 namespace {
 
@@ -158,10 +158,6 @@ std::vector<PathPoint> DrivenTrack::back() const {
   }
   return points;
 }
-
-using semantic_planning::Fit;
-using semantic_planning::PathPoint;
-using semantic_planning::SemanticPlanner;
 
 bool PathJudgment::isClearlyBetterThan(const PathJudgment& other) const {
   const bool backsUp = longestBackwards > kLongestBackwards;

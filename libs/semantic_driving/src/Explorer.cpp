@@ -14,13 +14,7 @@
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
-using semantic_planning::Column;
-using semantic_planning::Ground;
-using semantic_planning::PlanResult;
-using semantic_planning::PlanStatus;
-using semantic_planning::SemanticPlanner;
-using semantic_planning::Slices;
-using semantic_planning::Surface;
+using namespace semantic_planning;
 
 namespace {
 

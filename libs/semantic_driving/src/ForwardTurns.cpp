@@ -5,9 +5,7 @@
 namespace semantic_driving {
 
 using colored_graph::Rank;
-using semantic_planning::PathPoint;
-using semantic_planning::ReedsSheppCurve;
-using semantic_planning::SemanticPlanner;
+using namespace semantic_planning;
 
 namespace {
 

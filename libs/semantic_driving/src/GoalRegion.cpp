@@ -11,11 +11,7 @@
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
-using semantic_planning::Column;
-using semantic_planning::Ground;
-using semantic_planning::SemanticPlanner;
-using semantic_planning::Slices;
-using semantic_planning::VehicleOptions;
+using namespace semantic_planning;
 
 namespace {
 

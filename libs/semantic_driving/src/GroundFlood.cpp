@@ -7,12 +7,7 @@
 
 namespace semantic_driving {
 
-using semantic_planning::Column;
-using semantic_planning::Disc;
-using semantic_planning::Ground;
-using semantic_planning::SemanticPlanner;
-using semantic_planning::Slices;
-using semantic_planning::Surface;
+using namespace semantic_planning;
 
 ColumnRectangle knownAround(const Ground& ground, Column center, double radius) {
   constexpr double kMargin = 2;  // m, more than the unknown is looked at from where it is seen

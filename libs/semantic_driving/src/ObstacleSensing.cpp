@@ -4,10 +4,7 @@
 
 namespace semantic_driving {
 
-using semantic_planning::Column;
-using semantic_planning::Ground;
-using semantic_planning::SemanticPlanner;
-using semantic_planning::Surface;
+using namespace semantic_planning;
 
 ObstaclePoints senseObstacles(const SemanticPlanner& planner, const mrpt::math::TPose2D& pose,
                               double z, const ObstacleOptions& options) {

@@ -7,14 +7,7 @@ namespace semantic_driving {
 
 using colored_graph::ClassOrder;
 using mrpt::math::TPose2D;
-using semantic_planning::CollisionChecker;
-using semantic_planning::Ground;
-using semantic_planning::GroundOptions;
-using semantic_planning::GroundPose;
-using semantic_planning::PathPoint;
-using semantic_planning::PlanStatus;
-using semantic_planning::SemanticPlanner;
-using semantic_planning::VehicleOptions;
+using namespace semantic_planning;
 
 namespace {
 

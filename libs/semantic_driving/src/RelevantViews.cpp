@@ -14,11 +14,7 @@
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
-using semantic_planning::Column;
-using semantic_planning::Ground;
-using semantic_planning::GroundPoint;
-using semantic_planning::SemanticPlanner;
-using semantic_planning::Surface;
+using namespace semantic_planning;
 using namespace view_information;
 
 namespace {

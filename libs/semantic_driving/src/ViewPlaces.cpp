@@ -10,9 +10,7 @@
 namespace semantic_driving {
 
 using mrpt::math::TPose2D;
-using semantic_planning::Column;
-using semantic_planning::Ground;
-using semantic_planning::SemanticPlanner;
+using namespace semantic_planning;
 
 namespace {
 

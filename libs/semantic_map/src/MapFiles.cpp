@@ -6,10 +6,8 @@
 #include <strict_files/TextFile.h>
 
 #include <iomanip>
-#include <limits>
 #include <ostream>
 #include <stdexcept>
-#include <string>
 
 namespace semantic_map {
 

@@ -6,7 +6,6 @@
 #include <semantic_octree/SemanticOcTree.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>

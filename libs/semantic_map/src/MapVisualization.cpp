@@ -12,7 +12,6 @@
 #include <tree_abstraction/Information.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "FolderOfMap.h"
 

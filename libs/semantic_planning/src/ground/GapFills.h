@@ -2,7 +2,6 @@
 #include <semantic_octree/ColumnScan.h>
 
 #include <array>
-#include <tuple>
 #include <vector>
 
 #include "SurfaceTile.h"
@@ -43,15 +42,6 @@ struct GapFill {
   double width() const { return (columns - 1) * kDirections[direction].length; }
   int height(int i) const;
   ClassId nearerClass(int i) const { return 2 * i <= columns ? classId : otherClass; }
-
-  /** By row, column, direction and height, then by the rest. */
-  bool operator<(const GapFill& o) const {
-    const auto key = [](const GapFill& b) {
-      return std::tie(b.from.y, b.from.x, b.direction, b.z, b.columns, b.otherZ, b.classId,
-                      b.otherClass);
-    };
-    return key(*this) < key(o);
-  }
 };
 
 using GapFillGrid = ColumnGrid<std::vector<GapFill>>;
@@ -63,7 +53,7 @@ inline int reachOfGapFills(const GroundShape& shape) {
 
 /** The fills whose first end is in a tile: from each surface that lacks a neighbor in a direction
  * to the next surface at about its height, where nothing stands in between and no drop was seen
- * below. Sorted. */
+ * below. */
 std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
                                   const GroundShape& shape);
 

@@ -86,14 +86,6 @@ std::vector<ColumnBox> boxesOf(const std::vector<Column>& tiles) {
   return boxes;
 }
 
-/** The tiles that a fill's hole crosses, with repetitions. */
-void addCrossed(const GapFill& fill, std::vector<Column>& tiles) {
-  for (int i = 1; i < fill.columns; ++i) {
-    const Column tile = tileOf(fill.column(i));
-    if (i == 1 || !(tile == tiles.back())) tiles.push_back(tile);
-  }
-}
-
 /** The surfaces of a tile, and in columns without any those that are assumed, but over drops. */
 SurfaceTile withAssumed(const SurfaceTile& measured, const SurfaceTile& assumed,
                         const ColumnTile& columns, const GroundShape& shape) {
@@ -247,16 +239,20 @@ void GroundTiles::readWithin(const std::vector<Column>& tiles) {
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(const std::vector<Column>& tiles,
                                                    std::vector<Column> refilled) {
-  auto scanned = changedBy(inMortonOrder(tiles), [&](Column t) { return scan(t, refilled); });
-  return updateSurfaces(std::move(scanned), std::move(refilled));
+  return updateSurfaces(
+      changedBy(inMortonOrder(tiles),
+                [&](Column t) { return replace(m_columns, t, m_scanner.scan(t)); }),
+      std::move(refilled));
 }
 
 std::vector<ColumnBox> GroundTiles::updateSurfaces(std::vector<ColumnBox> scanned,
                                                    std::vector<Column> refilled) {
   append(scanned, changedBy(tilesWithin(scanned, kReachOfClasses),
-                            [&](Column t) { return measure(t, refilled); }));
+                            [&](Column t) { return replace(m_measured, t, measured(t)); }));
   const int reach = reachOfGapFills(m_shape);
-  for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findFills(t, refilled);
+  for (const Column& t : tilesWithin(scanned, {reach, reach, reach, 0})) findFills(t);
+  for (const Column& t : tilesWithin(scanned, {2 * reach, 2 * reach, reach, reach}))
+    refilled.push_back(t);  // what those fills may cross
   sortOut(refilled);
   auto changed = changedBy(refilled, [&](Column t) { return fill(t); });
   const auto sloped = tilesWithin(changed, m_shape.baseline);
@@ -282,12 +278,6 @@ std::vector<ColumnBox> GroundTiles::updateClearance(const std::vector<ColumnBox>
   return finished;
 }
 
-ColumnBox GroundTiles::scan(Column tile, std::vector<Column>& refilled) {
-  const ColumnBox changed = replace(m_columns, tile, m_scanner.scan(tile));
-  if (!changed.empty()) refilled.push_back(tile);
-  return changed;
-}
-
 SurfaceTile GroundTiles::measured(Column tile) const {
   SurfaceTile measured = measuredSurfaces(m_columns, tile, m_shape);
   const SurfaceTile* assumed = m_assumed.find(tile);
@@ -296,21 +286,10 @@ SurfaceTile GroundTiles::measured(Column tile) const {
   return withAssumed(measured, *assumed, columns ? *columns : ColumnTile(), m_shape);
 }
 
-ColumnBox GroundTiles::measure(Column tile, std::vector<Column>& refilled) {
-  const ColumnBox changed = replace(m_measured, tile, measured(tile));
-  if (!changed.empty()) refilled.push_back(tile);
-  return changed;
-}
-
-void GroundTiles::findFills(Column tile, std::vector<Column>& refilled) {
-  std::vector<GapFill> found = gapFillsFrom(m_columns, m_measured, tile, m_shape), different;
-  const std::vector<GapFill>* before = m_fills.find(tile);
-  const std::vector<GapFill> none;
-  std::set_symmetric_difference(found.begin(), found.end(), (before ? *before : none).begin(),
-                                (before ? *before : none).end(), std::back_inserter(different));
-  for (const GapFill& fill : different) addCrossed(fill, refilled);
+void GroundTiles::findFills(Column tile) {
+  std::vector<GapFill> found = gapFillsFrom(m_columns, m_measured, tile, m_shape);
   found.shrink_to_fit();
-  if (!different.empty()) m_fills.at(tile) = std::move(found);
+  if (!found.empty() || m_fills.find(tile)) m_fills.at(tile) = std::move(found);
 }
 
 ColumnBox GroundTiles::fill(Column tile) {

@@ -72,13 +72,9 @@ class GroundTiles {
   /** How much clearance they have, and which are connected. */
   std::vector<ColumnBox> updateClearance(const std::vector<ColumnBox>& changed);
 
-  /** Stages tell which columns of a tile changed.
-   * \param refilled gets the tile if anything changed */
-  ColumnBox scan(Column tile, std::vector<Column>& refilled);
-  ColumnBox measure(Column tile, std::vector<Column>& refilled);
   SurfaceTile measured(Column tile) const;
-  /** \param refilled gets the tiles that fills cross which came or went */
-  void findFills(Column tile, std::vector<Column>& refilled);
+  void findFills(Column tile);
+  /** Stages tell which columns of a tile changed. */
   ColumnBox fill(Column tile);
   ColumnBox findObstacles(Column tile);
 

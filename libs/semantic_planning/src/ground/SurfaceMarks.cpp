@@ -133,41 +133,6 @@ int levelTolerance(int columns, const GroundShape& shape) {
   return std::min(shape.height, 2 * shape.step + 1 + static_cast<int>(shape.rise * columns));
 }
 
-/** For a row of columns of a tile the distance to the nearest one in the row with any obstacle, at
- * most `farthest`. \param low the row's first column */
-std::array<int, kTileEdge> distancesInRow(const TileWindow<ObstacleTile>& obstacles, Column low,
-                                          int farthest) {
-  std::array<int, kTileEdge> distances;
-  distances.fill(farthest);
-  for (int x = -farthest; x < kTileEdge + farthest; ++x) {
-    const Column c{low.x + x, low.y};
-    const ObstacleTile& tile = obstacles.around(c);
-    if (tile.begin(indexInTile(c)) == tile.end(indexInTile(c))) continue;
-    const int end = std::min(kTileEdge, x + farthest + 1);
-    for (int to = std::max(0, x - farthest); to < end; ++to)
-      distances[to] = std::min(distances[to], between(x, to));
-  }
-  return distances;
-}
-
-/** For each column of a tile the squared distance to the nearest column with any obstacle, however
- * high; at most farthest squared. First within rows, then across them. */
-std::array<int, kTileColumns> flatDistances(const TileWindow<ObstacleTile>& obstacles, Column tile,
-                                            int farthest) {
-  const Column low = firstColumnOf(tile);
-  std::array<int, kTileColumns> squared;
-  squared.fill(farthest * farthest);
-  for (int row = -farthest; row < kTileEdge + farthest; ++row) {
-    const auto inRow = distancesInRow(obstacles, {low.x, low.y + row}, farthest);
-    for (int y = std::max(0, row - farthest); y <= std::min(kTileEdge - 1, row + farthest); ++y) {
-      const int dy = between(row, y);
-      int* at = &squared[y * kTileEdge];
-      for (int x = 0; x < kTileEdge; ++x) at[x] = std::min(at[x], dy * dy + inRow[x] * inRow[x]);
-    }
-  }
-  return squared;
-}
-
 /** The obstacle of a column at about height z; or null. */
 const std::uint16_t* obstacleAt(const TileWindow<ObstacleTile>& obstacles, Column c, int z,
                                 int tolerance) {
@@ -190,13 +155,10 @@ ClearanceMeter::ClearanceMeter(const GroundShape& shape) : m_farthest(shape.larg
     }
   std::stable_sort(m_places.begin(), m_places.end(),
                    [](const Place& l, const Place& r) { return l.clearance2 < r.clearance2; });
-  m_firstAt.resize(farthest2);
-  for (std::size_t i = m_places.size(); i-- > 0;) m_firstAt[m_places[i].clearance2] = i;
 }
 
-std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(const ObstacleGrid& obstacles,
-                                                                Column c, int z) const {
-  const TileWindow<ObstacleTile> around(obstacles, tileOf(c), m_farthest);
+std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(
+    const TileWindow<ObstacleTile>& around, Column c, int z) const {
   for (const Place& p : m_places) {
     const Column at{c.x + p.x, c.y + p.y};
     if (const auto* height = obstacleAt(around, at, z, p.tolerance))
@@ -205,27 +167,22 @@ std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(const ObstacleGr
   return std::nullopt;
 }
 
+std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(const ObstacleGrid& obstacles,
+                                                                Column c, int z) const {
+  return nearest(TileWindow<ObstacleTile>(obstacles, tileOf(c), m_farthest), c, z);
+}
+
 ColumnBox ClearanceMeter::measure(const ObstacleGrid& obstacles, Column tile,
                                   SurfaceTile& measured) const {
   ColumnBox changed;
   if (measured.surfaces.empty()) return changed;
   const TileWindow<ObstacleTile> around(obstacles, tile, m_farthest);
-  const auto flat = flatDistances(around, tile, m_farthest);
-  const int farthest2 = m_farthest * m_farthest;
-  const auto clearance2At = [&](Column c, int z) {
-    const int flat2 = flat[indexInTile(c)];
-    if (flat2 == farthest2) return farthest2;
-    const auto first = m_places.begin() + static_cast<std::ptrdiff_t>(m_firstAt[flat2]);
-    const auto nearest = std::find_if(first, m_places.end(), [&](const Place& p) {
-      return obstacleAt(around, {c.x + p.x, c.y + p.y}, z, p.tolerance);
-    });
-    return nearest == m_places.end() ? farthest2 : nearest->clearance2;
-  };
   forSurfacesOf(tile, measured, [&](Column c, std::size_t i) {
     Surface& s = measured.surfaces[i];
-    const auto clearance2 = static_cast<std::uint16_t>(clearance2At(c, s.z));
+    const auto obstacle = nearest(around, c, s.z);
+    const int clearance2 = obstacle ? obstacle->clearance2 : m_farthest * m_farthest;
     if (s.clearance2 != clearance2) changed.add(c);
-    s.clearance2 = clearance2;
+    s.clearance2 = static_cast<std::uint16_t>(clearance2);
   });
   return changed;
 }

@@ -1,7 +1,6 @@
 #pragma once
 #include <semantic_octree/ColumnScan.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -67,9 +66,10 @@ class ClearanceMeter {
     int tolerance;  ///< how far ground may have gone up or down on the way
   };
 
+  std::optional<Obstacle> nearest(const TileWindow<ObstacleTile>& around, Column c, int z) const;
+
   int m_farthest;
-  std::vector<Place> m_places;         ///< nearest first
-  std::vector<std::size_t> m_firstAt;  ///< of m_places, by clearance2
+  std::vector<Place> m_places;  ///< nearest first
 };
 
 }  // namespace semantic_planning

@@ -3,7 +3,6 @@
 #include <semantic_planning/planner/SemanticPlanner.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

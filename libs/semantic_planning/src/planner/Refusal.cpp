@@ -3,7 +3,6 @@
 #include <strict_files/TextFile.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <map>

@@ -7,7 +7,6 @@
 #include <semantic_planning/roadmap/RoadmapOptions.h>
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <tuple>

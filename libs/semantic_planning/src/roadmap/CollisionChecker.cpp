@@ -3,10 +3,8 @@
 #include <colored_graph/ColoredGraph.h>
 
 #include <algorithm>
-#include <array>
 #include <climits>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "ground/GroundTiles.h"

@@ -2,7 +2,6 @@
 #include <semantic_planning/roadmap/Roadmap.h>
 
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "Candidates.h"

@@ -33,35 +33,19 @@ void NearestPoses::forNear(const TPose2D& pose, double radius, F f) const {
         for (const VertexId id : *cell) f(id);
 }
 
-bool NearestPoses::mayTake(const Entry& entry, const GroundPose& pose) const {
-  const double farthest =
-      entry.nearest.size() == m_count ? entry.nearest.back().distance : m_radius;
-  return m_reedsShepp.lowerBound(entry.pose.pose, pose.pose) <= farthest + kInexact;
-}
-
 void NearestPoses::replace(const std::vector<VertexId>& removed, const std::vector<VertexId>& ids,
                            const std::vector<GroundPose>& poses) {
-  for (const VertexId id : removed) {
-    std::vector<VertexId>& cell = m_cells.at(cellOf(m_entries[id].pose.pose));
-    cell.erase(std::find(cell.begin(), cell.end(), id));
-    m_entries[id] = {};
-  }
-  std::vector<bool> isOutdated;
-  for (const Entry& e : m_entries)
-    isOutdated.push_back(std::any_of(e.nearest.begin(), e.nearest.end(),
-                                     [&](const Neighbor& n) { return !contains(n.id); }));
+  if (removed.empty() && ids.empty()) return;
+  for (const VertexId id : removed) m_entries[id] = {};
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    if (ids[i] >= m_entries.size()) m_entries.resize(ids[i] + 1), isOutdated.resize(ids[i] + 1);
+    if (ids[i] >= m_entries.size()) m_entries.resize(ids[i] + 1);
     m_entries[ids[i]] = {true, poses[i], {}};
-    isOutdated[ids[i]] = true;
-    m_cells.at(cellOf(poses[i].pose)).push_back(ids[i]);
   }
-  for (const GroundPose& pose : poses)
-    forNear(pose.pose, m_radius, [&](VertexId id) {
-      if (!isOutdated[id]) isOutdated[id] = mayTake(m_entries[id], pose);
-    });
+  m_cells = {};
   for (VertexId id = 0; id < m_entries.size(); ++id)
-    if (isOutdated[id]) m_entries[id].nearest = nearestTo(m_entries[id].pose, m_count, id);
+    if (contains(id)) m_cells.at(cellOf(pose(id).pose)).push_back(id);
+  for (VertexId id = 0; id < m_entries.size(); ++id)
+    if (contains(id)) m_entries[id].nearest = nearestTo(pose(id), m_count, id);
 }
 
 /** Farther and farther: where poses are dense there is no need to look at all within the radius. */

@@ -47,8 +47,6 @@ class NearestPoses {
   /** f(id) for all poses within a radius, and some beyond. */
   template <class F>
   void forNear(const mrpt::math::TPose2D& pose, double radius, F f) const;
-  /** Whether a pose may become its neighbor. */
-  bool mayTake(const Entry& entry, const GroundPose& pose) const;
 
   const ReedsShepp& m_reedsShepp;
   std::size_t m_count;

@@ -4,7 +4,6 @@
 #include <semantic_types/ClassTable.h>
 
 #include <filesystem>
-#include <string>
 
 namespace semantic_planning {
 
