@@ -55,9 +55,9 @@ class ViewStrategy {
   virtual void done(const View& view) = 0;
   /** A sentence for people, when it is over. */
   virtual std::string conclusion() const = 0;
-  /** What the look that promised most in the last call of next() is expected to add to the
-   * objective of a compressed tree of the weights (GainField::growth()), nats summed over voxels; 0
-   * unless it is predicted. The map has to be as it was. */
+  /** What the look that promised most in the last call of next() is expected to add to a compressed
+   * tree's objective by the weights (GainField::growth()): nats summed over voxels, 0 unless it is
+   * predicted. The map has to be as it was. */
   virtual view_information::Bounds growth() const { return {}; }
   /** What a look from a pose on ground of height z is expected to tell, by the map as it was in the
    * last call of next(), nats; 0 unless it is predicted. */

@@ -29,12 +29,12 @@ struct ClassVotes {
  * classes.
  *
  * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k. Then, if the likeliest class
- * is above its limit, all are lowered by the excess (clamping one by one would make equal what is
- * not, where hits raise all of them), and each is clamped from below.
+ * is above its limit, all are lowered by the excess: clamping one by one would make equal what is
+ * not, where hits raise all of them. Each is clamped from below.
  *
- * A class seen for the first time leaves the rest with the rest's value; if more than `Named`
- * classes are named, the least likely one (largest id on a tie) joins the rest, whose value becomes
- * the logarithm of the mean odds of its members.
+ * A class seen for the first time begins with the rest's value. If more than `Named` classes are
+ * named, the least likely one (largest id on a tie) joins the rest. The rest's value becomes the
+ * logarithm of the mean odds of its members.
  *
  * With Real = float, increments, limits and the prior are on the grid of onGrid(), so that adding
  * them is exact: away from the limits the order of observations does not matter, not even to the

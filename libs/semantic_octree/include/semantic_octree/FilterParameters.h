@@ -11,11 +11,11 @@ namespace semantic_octree {
  *   (1 - shared) w_k p_k^power / sum_j w_j p_j^power + shared u_k,
  *
  * u_k = 1 / n for the n classes that the voxel's record names and 0 for the others. A power below 1
- * says that labels err more often, or repeat each other more, than the filter takes them to, above
- * 1 less; what is shared, that voxels hold several classes. A factor w_k below 1 says that a class
- * is seldom what labels say it is, for it is rare, or others are taken for it (Alexandari et al.,
- * "Maximum Likelihood with Bias-Corrected Calibration is Hard-To-Beat at Label Shift Adaptation",
- * 2020). Without factors the order of classes stays. */
+ * says that labels err more often, or repeat each other more, than the filter takes them to. What
+ * is shared says that voxels hold several classes. A factor w_k below 1 says that labels name a
+ * class too often: it is rare, or others are taken for it (Alexandari et al., "Maximum Likelihood
+ * with Bias-Corrected Calibration is Hard-To-Beat at Label Shift Adaptation", 2020). Without
+ * factors the order of classes stays. */
 struct Calibration {
   static constexpr double kMostFactor = 65536;
 

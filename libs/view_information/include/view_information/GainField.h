@@ -61,10 +61,10 @@ double gainOfHeading(const SectorGains& gains, int sector, double width);
 /** The heading of a sector's middle, radians. */
 double headingOf(int sector);
 
-/** What observing each known voxel of a map gains once more, and how far beams get through it, in
- * tiles of 8 x 8 x 8 that follow the map's changes. Half a tile is a byte a voxel and the values
- * that are in it, or one value: less than four bytes a known voxel. Not thread safe; the map must
- * not change during a call. */
+/** What one more look at each known voxel of a map gains, and how far beams get through it. Tiles
+ * of 8 x 8 x 8 voxels follow the map's changes. Half a tile is a byte a voxel and the values in it,
+ * or one value: less than four bytes a known voxel. Not thread safe; the map must not change during
+ * a call. */
 class GainField {
  public:
   /** \param map must outlive this. */
