@@ -72,8 +72,8 @@ class ViewStrategy {
 std::unique_ptr<ViewStrategy> nearestFrontier(const semantic_planning::SemanticPlanner& planner,
                                               const ExploreOptions& options);
 
-/** The views that tell most about what weights ask for, each meter of the way: a tour over the
- * places where much is left, so that nothing is left behind that is dear to come back to.
+/** The views that tell most about what weights ask for, for each meter of the way. They make a tour
+ * over the places where much is left, and leave nothing behind that is dear to come back to.
  * \param map the planner's; both must outlive it \param learned whether unknown space is predicted
  * from what is known; without, weights bring nothing */
 std::unique_ptr<ViewStrategy> relevantViews(const semantic_planning::SemanticPlanner& planner,

@@ -43,9 +43,9 @@ struct FilterParameters {
    * errs about most of its points. Of scans whose labels disagree more, it is less, too. */
   double labelCorrelation = 0.8;
   /** P(a return ends in the cell | the cell is occupied and a beam of the scan reaches it).
-   * Surfaces fill cells in part, and beams that graze one pass through cells that it crosses: 0.42
-   * to 0.69 in SemanticKITTI for cells of 0.1 to 0.4 m, 0.87 to 0.9 in a flat seen by a depth
-   * camera. */
+   * Surfaces fill cells in part, and beams that graze one pass through cells that it crosses. In
+   * SemanticKITTI it is 0.42 to 0.69 for cells of 0.1 to 0.4 m, in a flat before a depth camera
+   * 0.87 to 0.9. */
   double hitProbability = 0.5;
   /** P(a return ends in the cell | the cell is free and a beam of the scan reaches it). A return
    * outweighs four beams that pass; with less, ground seen at grazing angles erodes. Real sensors

@@ -172,9 +172,9 @@ inline RelaxedField::Label& RelaxedField::label(const Cell& cell) {
   return tile.labels[cell.index];
 }
 
-/** The least that the rest of a way may cost from the ground around a place on, for a vehicle that
- * could turn on the spot and fits everywhere: classes under its wheels and length count. What
- * nobody asks for is not found out. */
+/** The least that the rest of a way may cost from the ground around a place on. The vehicle could
+ * turn on the spot and fits everywhere; classes under its wheels and length count. What nobody asks
+ * for is not found out. */
 class CostField {
  public:
   using Length = colored_graph::Length;

@@ -77,10 +77,10 @@ class GainField {
   /** What views from a voxel gain: each voxel counts once, as surely as it is reached. */
   SectorGains sweep(const ViewTemplate& view, UnknownPrior& prior,
                     const octomap::OcTreeKey& from) const;
-  /** What a view from a voxel along a sector's middle is expected to add to the objective of a
-   * compressed tree of the question's weights: growthOfTree() of the template's voxels, each for
-   * those that it stands for, nats summed over these. The prior says which are reached, the map
-   * what is believed of them. */
+  /** What a view from a voxel along a sector's middle is expected to add to a compressed tree's
+   * objective by the question's weights. It is growthOfTree() of the template's voxels, in nats
+   * summed over the voxels that each stands for. The prior says which are reached, the map what is
+   * believed of them. */
   Bounds growth(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from,
                 int sector) const;
 
