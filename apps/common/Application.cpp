@@ -244,8 +244,7 @@ std::string lackingValues(const CLI::App& app) {
     for (const std::string& word : option->results())
       if (option->get_items_expected_min() > 1 &&
           std::find(known.begin(), known.end(), word) != known.end())
-        return option->get_name() + " needs " + std::to_string(option->get_items_expected_min()) +
-               " values";
+        return option->get_name() + ": expected " + option->get_type_name();
   return "";
 }
 
@@ -265,7 +264,7 @@ std::string readableMessage(const std::string& message) {
       {std::regex("^(--?[a-z-]+): \\1:"), "$1:"},
       {std::regex("^(--?[a-z-]+): (is )"), "$1 $2"},
       {std::regex(": 1 required .* missing$"), " lacks its value"},
-      {std::regex(": ([0-9]+) required .* missing$"), " needs $1 values"},
+      {std::regex(": [0-9]+ required (.*) missing$"), ": expected $1"},
       {std::regex(": At Most 1 required but received ([0-9]+)$"), " is given $1 times"},
       {std::regex("^A subcommand is required$"), "a command is missing"}};
   std::string text = message;

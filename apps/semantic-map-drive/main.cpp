@@ -206,7 +206,6 @@ class DriveProgram {
     DriveLoop& loop = m_loop.emplace(m_config, m_scene.world, order, m_cli.start, goalOf(m_cli),
                                      m_cli.events, known(), m_cli.navlog ? navlogs() : fs::path());
     if (m_cli.explore) loop.explore(m_weights);
-    loop.stopWhen([this] { return m_stop.pending(); });
     std::optional<Recorder> recorder;
     if (m_cli.rawlog) {
       loop.keepOriginals();
@@ -220,7 +219,7 @@ class DriveProgram {
       loop.addObserver(m_window.emplace(loop, m_scene.world, m_cli.start, goalOf(m_cli)));
       m_window->stopWhen([this] { return m_stop.pending(); });
     }
-    const DriveRecord record = loop.run();
+    const DriveRecord record = run(loop);
     strict_files::writeText(m_output.staged("drive.csv"), toCsv(record));
     writeJson(m_output.staged("drive.json"), toJson(record, order));
     semantic_octree::saveTree(loop.mapper().map(), m_output.staged("map.semantic").string());
@@ -232,6 +231,15 @@ class DriveProgram {
     printSummary(record);
     if (!m_window) m_loop.reset();
     return record;
+  }
+
+  DriveRecord run(DriveLoop& loop) const {
+    Progress progress("Driving", 0);
+    loop.stopWhen([&] {
+      progress.update(0, std::to_string(std::lround(loop.time())) + " s of the drive");
+      return m_stop.pending();
+    });
+    return loop.run();
   }
 
   void save(const map_pictures::MapCanvas& canvas, const std::string& name) const {

@@ -290,8 +290,10 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
   if (cli.labelNoiseKind != label_noise::LabelNoise::Kind::Points)
     noise.emplace(cli.labelNoise, cli.labelNoiseKind, cli.seed, classes.table().size());
   const StopRequest stop("after this frame");
+  std::optional<Progress> progress(std::in_place, "Driving", frames);
   int k = 0;
   for (; k < frames && !stop.pending(); ++k) {
+    progress->update(k, std::to_string(k) + " frames");
     const double time = k / cli.rate;
     const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
     walk(walkers, time, scene.world);
@@ -300,6 +302,7 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
                        noise ? &*noise : nullptr));
     writePose(trajectory, kStartTime + time, toMrpt(T_world_robot));
   }
+  progress.reset();
   scene.world.setMovables({});
   rawlog.finish();
   strict_files::writeText(beside(cli.output, ".tum"), trajectory.str());

@@ -115,8 +115,8 @@ TEST(UsageErrors, nameTheOptionAndOfferWhatWasMeant) {
            {"semantic-map-edit a -o b --resolution -1",
             "--resolution is -1, expected a number above 0"},
            {"semantic-map-edit a --output", "--output lacks its value"},
-           {"semantic-map-edit a -o b --box 1,2,3", "--box needs 6 values"},
-           {"semantic-map-edit a --box 1,2,3,4,5 -o b", "--box needs 6 values"},
+           {"semantic-map-edit a -o b --box 1,2,3", "--box: expected X,Y,Z,X2,Y2,Z2"},
+           {"semantic-map-edit a --box 1,2,3,4,5 -o b", "--box: expected X,Y,Z,X2,Y2,Z2"},
            {"semantic-map-drive --goal 1,1,0 --order c --config d -o x", "--start is required"},
            {"rawlog2semantic-map a --config c -o b --pause", "--live"}}) {
     const ProgramRun run = runCommand(MSO_BIN_DIR "/" + command);

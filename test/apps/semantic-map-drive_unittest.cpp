@@ -132,7 +132,7 @@ int countPixels(const cv::Mat& screen, const cv::Vec3b& color) {
 
 /** What a drive said, but for the share of slow cycles, which is the machine's. */
 std::string withoutTimes(const std::string& output) {
-  return std::regex_replace(output, std::regex("[0-9.]+ % of cycles"), "some cycles");
+  return std::regex_replace(output, std::regex("Driving: .*\n|[0-9.]+ % of cycles"), "");
 }
 
 }  // namespace

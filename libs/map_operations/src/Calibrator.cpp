@@ -27,8 +27,8 @@ constexpr std::size_t kFew = 2;
 constexpr double kSteps = 256;
 /** Log-odds (ln 25) of two classes from which on a voxel is of one of them. */
 constexpr double kOfOne = 3.2;
-/** Labels err if more voxels than one in so many differ away from borders: of right labels one in
- * 70 to 3000 do, of labels that are wrong in 2 % one in 40, of 5 to 10 % one in 16 to 7. */
+/** Labels err if more voxels than one in so many differ away from borders. With right labels one in
+ * 70 to 3000 does, with 2 % wrong ones one in 40, with 5 to 10 % one in 16 to 7. */
 constexpr double kDiffering = 25;
 /** Voxels that were looked at before, whose labels did not differ. */
 constexpr double kVoxelsBefore = 100;

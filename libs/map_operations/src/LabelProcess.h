@@ -16,9 +16,9 @@ using LabeledVoxels = std::map<std::string, double>;
  *   else drawn from the row of the voxel's class.
  *
  * With c = r = 0 that is Dawid and Skene, "Maximum Likelihood Estimation of Observer Error-Rates
- * Using the EM Algorithm", 1979. Of the urn only so much can be seen as labels of one voxel differ.
- * Who errs again in the next scan errs for longer, too: that a label is of the urn is taken to be
- * at least as likely as that one of two scans repeats the one before, r >= 1 - (1 - c)^2. */
+ * Using the EM Algorithm", 1979. The urn shows only as far as labels of one voxel differ.
+ * Who errs again in the next scan errs for longer, too. So a label is of the urn at least as likely
+ * as one of two scans repeats the one before, r >= 1 - (1 - c)^2. */
 class LabelProcess {
  public:
   /** \param numClasses K > 1

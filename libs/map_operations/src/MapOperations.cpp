@@ -124,8 +124,8 @@ std::string pointText(const Eigen::Vector3d& p) {
   return textOf(p.x()) + "," + textOf(p.y()) + "," + textOf(p.z());
 }
 
-/** A result whose borders cut leaves of the map, each of which may be as large as a town: it has no
- * more cubes than come of a million cut ones, and of what grows with the map. */
+/** A result whose borders cut leaves of the map, which may be as large as towns. Its cubes come of
+ * a million cut ones at most, and of what grows with the map. */
 template <class Cursor>
 void fillCut(SemanticOcTree& result, const Cursor& cursor, const SemanticOcTree& map) {
   const std::uint64_t most = (std::uint64_t{1} << 20) + 64 * std::uint64_t{map.size()};

@@ -79,8 +79,8 @@ double speedFor(double curvature, double off, const DriveOptions& limits) {
   return std::max(most, DriveOptions::kSlowest);
 }
 
-/** The greatest acceleration that a limited jerk takes back, step by step, until the speed has
- * changed so much: with n + 1 steps a, a - J, ..., a - nJ, the last of them less than J. */
+/** The greatest acceleration that a limited jerk takes back before the speed has changed so much.
+ * The steps are a, a - J, ..., a - nJ, the last of them less than J. */
 double accelerationFor(double change, double seconds, const DriveOptions& limits) {
   const double sum = std::abs(change) / seconds;  // of the accelerations
   const double less = limits.maxJerk * seconds;   // J

@@ -11,10 +11,9 @@ namespace semantic_driving {
 /** Where the last part of any way to a goal lies: the columns that a flood from the goal gets to
  * without passing where the vehicle can get over known ground, or where it must not be.
  *
- * A way to the goal leaves the reached columns for the last time at the region's border, so that
- * only from there exploring helps; if they do not border on the region, none helps: what is known
- * to be in the way stays there, whatever else is seen. In doubt a column belongs to the region, and
- * exploring goes on:
+ * A way to the goal leaves the reached columns for the last time at the region's border. Exploring
+ * helps only from there. If they do not border on the region, nothing helps: what is known to be in
+ * the way stays there. In doubt a column belongs to the region, and exploring goes on:
  * - the unknown is passable, and so is all ground that is not known to be an obstacle;
  * - an obstacle keeps only those columns wherein no pose leaves the planner's clearance between it
  *   and the largest disc around the vehicle's origin;

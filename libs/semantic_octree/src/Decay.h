@@ -8,14 +8,14 @@
 
 namespace semantic_octree {
 
-/** How a map forgets: of a leaf with the half-life T, the log-odds of occupancy and the differences
- * between its classes' log-odds shrink to 2^(-1/8) of what they were, at each multiple of T / 8 on
- * the map's clock (doc/how-it-works/decay.md).
+/** How a map forgets. At each multiple of T / 8 on the map's clock, a leaf with the half-life T
+ * keeps 2^(-1/8) of its log-odds of occupancy, and of the differences between those of its classes
+ * (doc/how-it-works/decay.md).
  *
- * A leaf's half-life is that of its likeliest class, or of free space where it is not occupied; one
- * that is occupied without a class that is likelier than the others has none. On the grid of
- * log-odds, occupancy is rounded towards 0 and differences away from it: a leaf keeps its half-life
- * until it is unknown, so that many short times leave what a long one does, to the last bit. */
+ * A leaf's half-life is that of its likeliest class, or of free space where it is not occupied. An
+ * occupied one without a likeliest class has none. On the grid of log-odds, occupancy is rounded
+ * towards 0 and differences away from it: a leaf keeps its half-life until it is unknown. So many
+ * short times leave what a long one does, to the last bit. */
 
 /** The clock's highest time, nanoseconds: 200 years. */
 constexpr std::int64_t kOldestMap = 200LL * 365 * 86400 * 1000000000;

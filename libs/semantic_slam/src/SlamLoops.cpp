@@ -23,8 +23,8 @@ constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngl
 /** Without registration the robot may be off as after so many times the way more. */
 constexpr double kLostMore = 9;
 constexpr std::size_t kMostPlaces = 3;
-/** Window in which a loop that is left is searched at the end, and how far off what it finds has to
- * be that the map is said to be wrong; cells of the grid. */
+/** Cells of the grid: the window in which loops that are left are searched at the end, and how far
+ * off one has to be that the map is said to be wrong. */
 constexpr double kLeftWindow = 20, kApart = 3;
 /** Share of the highest score where poses are right already, by the first window; and where they
  * would move, of what the stretch has in itself: people and noise fit nowhere. What goes on into a

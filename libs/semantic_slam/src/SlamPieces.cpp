@@ -14,8 +14,8 @@ constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
 /** Share of the highest score of a place that is searched everywhere. Right places have .5 to .9;
  * wrong ones, up to .7, have others beside them that fit as well. */
 constexpr double kFoundScore = 0.5;
-/** A piece is searched when it is so long, m, and each time that it grew by the factor; first when
- * twice as long for each of the last pieces that was not found, of so many. */
+/** A piece is searched when it is so long, m, and each time that it grew by the factor. For each of
+ * the last pieces that was not found, of so many, it has to be twice as long. */
 constexpr double kFirstLook = 4, kNextLook = 1.4;
 constexpr int kMostNotFound = 3;
 /** Keyframes that are searched at most; points of them; edge of the search's cells, of a loop's. */

@@ -14,7 +14,7 @@ namespace colored_graph {
 struct SearchOptions {
   /** Lower bound of the length of every path between two vertices; none: 0. It has to be
    * consistent: bound(s, w) <= bound(s, v) + length(v, w) for every edge that can be driven from v
-   * to w, with the least length where it is unevaluated (a metric, rounded with lengthDown(), is).
+   * to w. Unevaluated ones have their least length. A metric, rounded with lengthDown(), serves.
    */
   std::function<Length(VertexId, VertexId)> lengthBound;
   /** The profile of an unevaluated edge, or nothing if it is blocked. The graph keeps the answer.

@@ -16,7 +16,7 @@ enum class EdgeModel { Endpoint, Sweep, Profile };
  * counts once in every rank that it touches.
  * ArcLength: (length in the worst rank, ..., length in rank 1; total length). Total length in the
  * place of the length in rank 0 gives the same order, since the other lengths are equal when it
- * decides, and is what a lower bound of the distance can bound. */
+ * decides. A lower bound of the distance can bound it. */
 enum class CostKind { Count, ArcLength };
 
 /** How a path is judged. Among paths of equal cost the one with fewer edges is taken, then the one

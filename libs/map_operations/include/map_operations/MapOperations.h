@@ -16,8 +16,8 @@ namespace semantic_octree {
 
 /** \file
  * What comes of maps: new ones, or others that are to be filled. The latter have to be empty
- * and like emptyLike(), and may be in a folder of tiles that is open for writing (MapFolder), so
- * that they need not fit into memory. If filling fails they are not to be used. */
+ * and like emptyLike(). They may be in a folder of tiles that is open for writing (MapFolder), and
+ * need not fit into memory then. If filling fails they are not to be used. */
 
 /** Fills a map with the nodes of another, to the last bit.
  * \param copy to be filled \throw std::invalid_argument it is not empty, or not like the map. */
@@ -37,10 +37,10 @@ enum class Limits {
  * Maps that age (SemanticOcTree::age()) are added as they are now; the sum's clock is the latest of
  * theirs.
  *
- * The order of the maps leaves no trace, not even in the last bit. Neither does grouping, as long
- * as partial sums are made with Limits::Keep, no voxel has more than three named classes, and no
- * sum leaves the range of log-odds, 31.99 on either side (four maps of 24 classes that are all as
- * sure as they can be). What is beyond is lowered into the range, all classes alike.
+ * The order of the maps leaves no trace, not even in the last bit. Neither does grouping if partial
+ * sums are made with Limits::Keep and no voxel has more than three named classes. No sum may leave
+ * the range of log-odds, 31.99 on either side (four maps of 24 classes that are all as sure as they
+ * can be). What is beyond is lowered into the range, all classes alike.
  * \throw std::invalid_argument no maps, or maps that differ in resolution, classes or filter
  * parameters; says which. */
 SemanticOcTree merged(const std::vector<const SemanticOcTree*>& maps,

@@ -23,21 +23,22 @@ struct SmoothingOptions {
 };
 
 /** A map whose voxels' classes are seen together with their neighbors' (a spatial kernel, as in
- * Gan et al., "Bayesian Spatial Kernel Smoothing for Scalable Dense Semantic Mapping", and ConvBKI,
- * but at the query: the map stays the exact filter of its scans, and the weight can change).
+ * Gan et al., "Bayesian Spatial Kernel Smoothing for Scalable Dense Semantic Mapping", and
+ * ConvBKI). Here it is at the query: the map stays the exact filter of its scans, the weight can
+ * change.
  *
  * With h_k the log-odds that the filter believes of a voxel's classes, less those of the likeliest,
  *
  *     g_k = (h_k(voxel) + weight sum_n max(h_k(n), -3.2)) / (1 + repeated (W - 1)).
  *
  * A neighbor tells no more than odds of 25 = e^3.2, for a border may lie between. W is the sum of
- * the weights: 1 for the voxel, `weight` for a neighbor, in proportion less if its log-odds range
- * over more than 3.2; below 1 it counts as 1. Voxels without a label tell nothing and have no
+ * the weights, at least 1: 1 for the voxel, `weight` for a neighbor, in proportion less if its
+ * log-odds range over more than 3.2. Voxels without a label tell nothing and have no
  * weight. No class falls farther behind the likeliest than the filter's limits let it in one voxel.
  * What is stated follows from g as the map's own follows from h, with the map's Calibration:
  * classes share what the voxel's own record names. Where classes have factors, 2.2 takes the place
- * of 3.2, and factors are raised to the root of W over the divisor: how frequent a class is counts
- * once, for what its labels are taken counts with each voxel, and a factor is both.
+ * of 3.2, and factors are raised to the root of W over the divisor. A factor is both how frequent a
+ * class is, which counts once, and for what its labels are taken, which counts with each voxel.
  *
  * A sum is right if neighbors err by themselves (repeated = 0), a mean if they all err alike
  * (repeated = 1). The map tells which it is: who learns more believes, in the mean, what was

@@ -30,9 +30,9 @@ struct PictureStyle {
   void validate() const;
 };
 
-/** The map from above, +x to the right and +y up: per column the highest occupied cell in the color
- * of its likeliest class (gray: none), shaded by the relief; with a scale bar and the axes. (What
- * draws more on a map begins with a MapCanvas.)
+/** The map from above, +x to the right and +y up, with a scale bar and the axes. Each column has
+ * its highest occupied cell in the color of its likeliest class (gray: none), shaded by the relief.
+ * (What draws more on a map begins with a MapCanvas.)
  * \return BGR, 8 bits. An empty map gives an empty sheet.
  * \throw std::invalid_argument as PictureStyle::validate(). */
 cv::Mat renderTopView(const semantic_octree::SemanticOcTree& tree, const PictureStyle& style = {});

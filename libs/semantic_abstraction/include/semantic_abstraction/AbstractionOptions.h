@@ -92,8 +92,8 @@ const strict_files::Choices<AbstractionOptions::Unknown>& choicesOf(AbstractionO
  * stands in the README of semantic-map-compress.
  * \param alpha of solutions that state none
  * \throw std::runtime_error naming file, line, key and value: unreadable, unknown or repeated key,
- * a class that is not in the table, a weight or alpha that is not a number >= 0, a class both
- * relevant and irrelevant, a solution without weights, two solutions of one name. */
+ * a class that is not in the table or both relevant and irrelevant. A weight or alpha that is not a
+ * number >= 0. A solution without weights, or two of one name. */
 std::vector<AbstractionOptions> loadWeights(const std::filesystem::path& file,
                                             const semantic_types::ClassTable& classes,
                                             double alpha = tree_abstraction::kAlpha);

@@ -10,9 +10,9 @@ namespace semantic_driving {
 
 /** Drives a path: MRPT's reactive navigator around what stands in the way where that can (forward,
  * and not to an exact pose), the tracker everywhere else. Whatever either of them wants, the
- * vehicle does not go where it could not stop before an obstacle, lets those who move pass
- * (separationSpeed()), steps aside where somebody walks into it as it stands, and changes neither
- * its acceleration nor its steering faster than DriveOptions say. */
+ * vehicle does not go where it could not stop before an obstacle. It lets people pass
+ * (separationSpeed()), and steps aside where somebody walks into it as it stands. Acceleration and
+ * steering change as fast as DriveOptions say, at most. */
 class DriveController {
  public:
   /** \throw std::exception bad options, or what the reactive navigator does not like. */

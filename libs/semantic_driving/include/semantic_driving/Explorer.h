@@ -41,8 +41,8 @@ struct Exploration {
    * around the vehicle. */
   bool enclosed = false;
   /** Around the goal, up to what encloses it or is reached, square meters; infinite if it leaves
-   * the radius: then, if there is no way, it is the vehicle that is enclosed, as it may seem where
-   * it does not see the ground that it stands on. */
+   * the radius. Then, if there is no way, the vehicle is enclosed, as it may seem where it does not
+   * see its own ground. */
   double goalArea = std::numeric_limits<double>::infinity();
   /** Known ground leads to the goal's place, though perhaps not for a vehicle that has to turn, or
    * is to stand there. */
@@ -88,9 +88,9 @@ class Explorer {
     semantic_planning::PlanResult plan;
     DrivePath path;
   };
-  /** Looks for places() and chooses the one that costs least, if what its path costs beyond its
-   * length, as changes of gear and meters backwards do, counts, too; in slices, between which map
-   * and planner may be updated. What was begun before is given up. */
+  /** Looks for places() and chooses the one that costs least. What its path costs beyond its length
+   * counts, too: changes of gear, meters backwards. Between slices of the search map and planner
+   * may be updated. What was begun before is given up. */
   void begin(const mrpt::math::TPose2D& from, double z, const mrpt::math::TPose2D& goal);
   /** \param joined makes of a planned path what is driven
    * \param work as SemanticPlanner::goOn() has it \return whether the choice is made */

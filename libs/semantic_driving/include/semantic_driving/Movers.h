@@ -36,10 +36,10 @@ struct Mover {
 };
 using Movers = std::vector<Mover>;
 
-/** Follows those who move from scan to scan: points of their classes make clusters, each with a
- * Kalman filter of constant velocity and white acceleration (Bar-Shalom, Li and Kirubarajan,
- * "Estimation with applications to tracking and navigation", 2001, 6.3.2), the nearest goes with
- * the nearest. Nothing but scans is asked. */
+/** Follows people and vehicles from scan to scan. Points of their classes make clusters, and the
+ * nearest goes with the nearest. Each has a Kalman filter of constant velocity and white
+ * acceleration (Bar-Shalom, Li and Kirubarajan, "Estimation with applications to tracking and
+ * navigation", 2001, 6.3.2). Nothing but scans is asked. */
 class MoverTracker {
  public:
   /** \throw std::invalid_argument bad options, or a name that no class has. */

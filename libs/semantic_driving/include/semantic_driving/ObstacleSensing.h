@@ -14,9 +14,9 @@ struct ObstacleOptions {
   bool unknown = false;
 };
 
-/** The obstacles around a vehicle, in its frame (x ahead, y left, meters): centers of columns where
- * something occupied stands between the highest step and the vehicle's height above the ground
- * there, where the ground is too steep, or of a forbidden class.
+/** The obstacles around a vehicle, in its frame (x ahead, y left, meters): centers of columns.
+ * There the ground is too steep or of a forbidden class, or something occupied stands above it,
+ * between the highest step and the vehicle's height.
  *
  * How high the ground is spreads from column to column, from below the vehicle on; over ground that
  * is not known the height stays as it was. The unknown is no obstacle, unless it is asked for.

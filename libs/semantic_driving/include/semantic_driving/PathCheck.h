@@ -52,10 +52,10 @@ class ForwardTurns {
   explicit ForwardTurns(const semantic_planning::SemanticPlanner& planner,
                         double longest = PathJudgment::kLongestBackwards);
 
-  /** The path with a shortest curve that only goes forward (ReedsShepp::connectForward()) between
-   * two of its places with changes of gear between them, of the least MotionCost. The curve goes
-   * over no worse class than the part in whose place it is, or than the whole path if that has too
-   * long a stretch backwards, but may be longer there.
+  /** The path of the least MotionCost with a shortest curve that only goes forward
+   * (ReedsShepp::connectForward()), in place of a part with changes of gear. The curve may be
+   * longer there, but over no worse class than that part has, or than the whole path if that has
+   * too long a stretch backwards.
    * \param from arc length up to which the path stays, meters \param worth by so much the price has
    * to be lower, meters forward \return nothing if there is none */
   std::optional<DrivePath> find(const DrivePath& path, double from, double worth) const;

@@ -55,9 +55,9 @@ class ViewStrategy {
   virtual void done(const View& view) = 0;
   /** A sentence for people, when it is over. */
   virtual std::string conclusion() const = 0;
-  /** What the look that promised most in the last call of next() is expected to add to the
-   * objective of a compressed tree of the weights (GainField::growth()), nats summed over voxels; 0
-   * unless it is predicted. The map has to be as it was. */
+  /** What the look that promised most in the last call of next() is expected to add to a compressed
+   * tree's objective by the weights (GainField::growth()): nats summed over voxels, 0 unless it is
+   * predicted. The map has to be as it was. */
   virtual view_information::Bounds growth() const { return {}; }
   /** What a look from a pose on ground of height z is expected to tell, by the map as it was in the
    * last call of next(), nats; 0 unless it is predicted. */
@@ -72,8 +72,8 @@ class ViewStrategy {
 std::unique_ptr<ViewStrategy> nearestFrontier(const semantic_planning::SemanticPlanner& planner,
                                               const ExploreOptions& options);
 
-/** The views that tell most about what weights ask for, each meter of the way: a tour over the
- * places where much is left, so that nothing is left behind that is dear to come back to.
+/** The views that tell most about what weights ask for, for each meter of the way. They make a tour
+ * over the places where much is left, and leave nothing behind that is dear to come back to.
  * \param map the planner's; both must outlive it \param learned whether unknown space is predicted
  * from what is known; without, weights bring nothing */
 std::unique_ptr<ViewStrategy> relevantViews(const semantic_planning::SemanticPlanner& planner,

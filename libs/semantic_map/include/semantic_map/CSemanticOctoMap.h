@@ -73,9 +73,9 @@ struct InsertionResult {
  * rawlog-grabber by -p, RawLogViewer and SceneViewer3D by -l.
  *
  * Observations: see labeled_cloud::ScanConverter for the kinds and their labels, and
- * TLikelihoodOptions for their likelihood. canComputeObservationLikelihood() is false for those of
- * other kinds and for those that cannot be used (no points, an unknown class, ...), whose
- * likelihood is 0 at every pose: they tell nothing, and the reason goes to logger() as a warning.
+ * TLikelihoodOptions for their likelihood. canComputeObservationLikelihood() is false for other
+ * kinds, and for observations that cannot be used (no points, an unknown class). Their likelihood
+ * is 0 at every pose, and the reason goes to logger() as a warning.
  *
  * Reading, drawing and likelihoods are safe from several threads at a time; all else is not.
  *
@@ -136,9 +136,9 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
 
   /** What came of the last observation given to insertObservation().
    *
-   * insertObservation() returns false for an observation that it refuses. One of another class than
-   * those above is none of this map's business and passes in silence; for any other, the reason
-   * goes to logger() as a warning, unless it is the same as for the observation before. */
+   * insertObservation() returns false for an observation that it refuses. Observations of other
+   * classes than those above pass in silence. For any other the reason goes to logger() as a
+   * warning, unless it is that of the one before. */
   const InsertionResult& lastInsertion() const { return m_lastInsertion; }
   mrpt::system::COutputLogger& logger() { return m_logger; }
 
@@ -157,8 +157,8 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
    * genericMapParams.enableSaveAs3DObject is false. */
   void getVisualizationInto(mrpt_compat::drawing::CSetOfObjects& o) const override;
   /** Pairs the points of a points map with the occupied voxels of this one, as CPointsMap does with
-   * its points: each with the voxel whose center is nearest (2D: seen from above), so that ICP can
-   * register scans against the map. globalIdx numbers the voxels of one result.
+   * its points, for ICP. Each goes with the voxel whose center is nearest (2D: seen from above).
+   * globalIdx numbers the voxels of one result.
    * \throw std::invalid_argument the other map is not, and has not, a points map; bad parameters.
    */
   void determineMatching2D(const mrpt::maps::CMetricMap* other,

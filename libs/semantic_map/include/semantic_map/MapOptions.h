@@ -16,9 +16,9 @@ namespace semantic_map {
 /** Options that go into a section of an .ini file, into an archive, and onto a screen, as their
  * describe() lists them.
  *
- * Reading is strict where MRPT is silent: a key of the section that is not an option, and a value
- * that cannot be read or is out of range, are errors, and the options are then what they were
- * before. Keys that are absent leave their option as it is. */
+ * Reading is strict where MRPT is silent: unknown keys of the section, and values that cannot be
+ * read or are out of range, are errors. The options are then what they were before. Keys that are
+ * absent leave their option as it is. */
 template <class Derived>
 class TNamedOptions : public mrpt::config::CLoadableOptions {
  public:

@@ -29,16 +29,16 @@ struct ClassVotes {
  * classes.
  *
  * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k. Then, if the likeliest class
- * is above its limit, all are lowered by the excess (clamping one by one would make equal what is
- * not, where hits raise all of them), and each is clamped from below.
+ * is above its limit, all are lowered by the excess: clamping one by one would make equal what is
+ * not, where hits raise all of them. Each is clamped from below.
  *
- * A class seen for the first time leaves the rest with the rest's value; if more than `Named`
- * classes are named, the least likely one (largest id on a tie) joins the rest, whose value becomes
- * the logarithm of the mean odds of its members.
+ * A class seen for the first time begins with the rest's value. If more than `Named` classes are
+ * named, the least likely one (largest id on a tie) joins the rest. The rest's value becomes the
+ * logarithm of the mean odds of its members.
  *
- * With Real = float, increments, limits and the prior are on the grid of onGrid(), so that adding
- * them is exact: away from the limits the order of observations does not matter, not even to the
- * last bit. */
+ * With Real = float, increments, limits and the prior are on the grid of onGrid(), and adding them
+ * is exact. So away from the limits the order of observations does not matter, not even to the last
+ * bit. */
 template <typename Real, int Named = 3>
 class ClassFilter {
  public:
@@ -54,8 +54,8 @@ class ClassFilter {
 
   /** A return with a class label ended in the cell. */
   void hit(Belief& b, ClassId id) const { hitOf(b, id, m_hitSame, m_hitOther); }
-  /** Returns of one scan with labels ended in the cell, n_k of them of class k: one observation
-   * with q_k proportional to exp(f(n_k)), f = LabelEvidence, so that q of a single label is
+  /** Returns of one scan with labels ended in the cell, n_k of them of class k. They are one
+   * observation with q_k proportional to exp(f(n_k)), f = LabelEvidence. The q of a single label is
    * (accuracy, (1 - accuracy) / (K - 1), ...). Labels of one scan that agree add less than scans
    * that do, and a tie says that either class may be.
    * \param votes numVoted > 0 classes, ascending ids, counts > 0 */

@@ -52,15 +52,15 @@ struct ColumnTile {
   bool sameColumn(int column, const ColumnTile& o) const {
     return runs.sameColumn(column, o.runs) && spaces.sameColumn(column, o.spaces);
   }
-  /** Whether ground between two heights would hang over a drop of more than a step: sure free space
-   * goes down from `high` to a step below `low` without a gap, and what is under that is known. The
-   * beam of a ghost (a return that came by way of a mirror) frees voxels below the ground, too, but
-   * seldom twice. Where nothing is sure, free space below counts if it is near and too high for a
-   * single flat beam: three voxels.
+  /** Whether ground between two heights would hang over a drop of more than a step. Then sure free
+   * space goes down from `high` to a step below `low` without a gap, and what is under that is
+   * known. The beam of a ghost (a return that came by way of a mirror) frees voxels below the
+   * ground, too, but seldom twice. Where nothing is sure, free space below counts if it is near and
+   * too high for a single flat beam: three voxels.
    * \param step, near voxels */
   bool isOverDrop(int column, int low, int high, int step, int near) const;
-  /** Whether what is at height `low` is a ghost: more than one scan saw what is above `high`, where
-   * there is ground, and the map saw nothing surely, and not the half, of the space between. */
+  /** Whether what is at height `low` is a ghost. Then more than one scan saw what is above `high`,
+   * where there is ground. Of the space between, the map saw less than half, and nothing surely. */
   bool isGhost(int column, int low, int high) const;
   /** Bottom of the lowest run that is no ghost under the next run, or under sure space that begins
    * more than `margin` above; kNumKeys if there is none. */

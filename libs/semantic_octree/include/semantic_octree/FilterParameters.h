@@ -11,11 +11,11 @@ namespace semantic_octree {
  *   (1 - shared) w_k p_k^power / sum_j w_j p_j^power + shared u_k,
  *
  * u_k = 1 / n for the n classes that the voxel's record names and 0 for the others. A power below 1
- * says that labels err more often, or repeat each other more, than the filter takes them to, above
- * 1 less; what is shared, that voxels hold several classes. A factor w_k below 1 says that a class
- * is seldom what labels say it is, for it is rare, or others are taken for it (Alexandari et al.,
- * "Maximum Likelihood with Bias-Corrected Calibration is Hard-To-Beat at Label Shift Adaptation",
- * 2020). Without factors the order of classes stays. */
+ * says that labels err more often, or repeat each other more, than the filter takes them to. What
+ * is shared says that voxels hold several classes. A factor w_k below 1 says that labels name a
+ * class too often: it is rare, or others are taken for it (Alexandari et al., "Maximum Likelihood
+ * with Bias-Corrected Calibration is Hard-To-Beat at Label Shift Adaptation", 2020). Without
+ * factors the order of classes stays. */
 struct Calibration {
   static constexpr double kMostFactor = 65536;
 
@@ -43,9 +43,9 @@ struct FilterParameters {
    * errs about most of its points. Of scans whose labels disagree more, it is less, too. */
   double labelCorrelation = 0.8;
   /** P(a return ends in the cell | the cell is occupied and a beam of the scan reaches it).
-   * Surfaces fill cells in part, and beams that graze one pass through cells that it crosses: 0.42
-   * to 0.69 in SemanticKITTI for cells of 0.1 to 0.4 m, 0.87 to 0.9 in a flat seen by a depth
-   * camera. */
+   * Surfaces fill cells in part, and beams that graze one pass through cells that it crosses. In
+   * SemanticKITTI it is 0.42 to 0.69 for cells of 0.1 to 0.4 m, in a flat before a depth camera
+   * 0.87 to 0.9. */
   double hitProbability = 0.5;
   /** P(a return ends in the cell | the cell is free and a beam of the scan reaches it). A return
    * outweighs four beams that pass; with less, ground seen at grazing angles erodes. Real sensors

@@ -179,9 +179,9 @@ class SemanticOcTree {
    * \throw std::bad_alloc no memory; look at isBroken(). */
   InsertionReport insert(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
                          const InsertionOptions& options = {}, double secondsSince = 0);
-  /** Time passes, and what has a half-life (see ClassTable) is forgotten: the log-odds of a voxel's
-   * occupancy and the differences between its classes' log-odds halve within the half-life of its
-   * likeliest class, in eight steps; with less than 0.1 left of its occupancy, it is unknown
+  /** Time passes, and what has a half-life (see ClassTable) is forgotten. A voxel's log-odds of
+   * occupancy, and the differences between its classes', halve within the half-life of its
+   * likeliest class, in eight steps. With less than 0.1 left of its occupancy, it is unknown
    * (doc/how-it-works/decay.md). Many short times do what a long one does, to the last bit. Without
    * half-lives it does nothing.
    * \throw std::invalid_argument not 0 to 1e9 seconds \throw std::out_of_range more than 200 years

@@ -51,9 +51,8 @@ inline int reachOfGapFills(const GroundShape& shape) {
   return static_cast<int>(shape.widestGap) + 1;
 }
 
-/** The fills whose first end is in a tile: from each surface that lacks a neighbor in a direction
- * to the next surface at about its height, where nothing stands in between and no drop was seen
- * below. */
+/** The fills whose first end is in a tile. Each leads from a surface that lacks a neighbor to the
+ * next one at about its height. Nothing stands in between, and no drop was seen below. */
 std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
                                   const GroundShape& shape);
 

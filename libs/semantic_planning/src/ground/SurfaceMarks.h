@@ -35,8 +35,8 @@ class GroundComponents {
 using ObstacleTile = semantic_octree::ByColumn<std::uint16_t>;
 using ObstacleGrid = ColumnGrid<ObstacleTile>;
 
-/** A surface that is not free (not drivable, or to be kept off) is an obstacle; and so is a column
- * at the height of free ground next to it, if it has no surface within a step of that.
+/** A surface that is not free (not drivable, or to be kept off) is an obstacle. So is a column
+ * beside free ground that has no surface within a step of its height.
  * \param surfaces with `drivable` set. */
 ObstacleTile obstaclesIn(const SurfaceGrid& surfaces, Column tile, const GroundShape& shape);
 

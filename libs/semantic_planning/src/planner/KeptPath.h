@@ -39,8 +39,8 @@ class StageClock {
   StageTimes m_times;
 };
 
-/** The path that was planned last, kept true to the ground: a vehicle on its way along it needs no
- * search as long as nothing is in the way and no other way costs clearly less. */
+/** The path that was planned last, kept true to the ground. A vehicle on it needs no search as long
+ * as nothing is in the way and no other way costs clearly less. */
 class KeptPath {
  public:
   /** Checker and prices must outlive the path. */

@@ -164,8 +164,8 @@ class Improvement {
       offer(search(stationsOn(m_result.path), kSpanOn));
   }
 
-  /** Adds the pose that is so far to the left of a point, seen in a direction, and heads there but
-   * for a turn, if the vehicle can be there. What leads to the same voxel two stations on is the
+  /** Adds the pose so far to the left of a point, seen in a direction, if the vehicle can be there.
+   * It heads in that direction but for a turn. What leads to the same voxel two stations on is the
    * same pose: along a straight way most are. */
   void add(const PathPoint& p, double direction, double sideways, double turn,
            Station& station) const {

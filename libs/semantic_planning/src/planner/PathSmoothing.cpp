@@ -29,8 +29,9 @@ TPoint2D centerOf(const TPose2D& pose, double curvature) {
   return TPoint2D(pose.x, pose.y) + leftOf(pose.phi) * (1 / curvature);
 }
 
-/** Oriented circles touch if their centers are as far apart as their signed radii differ, a circle
- * and a line if its center is its signed radius to the left. Both are linear in the curvature. */
+/** Oriented circles touch if their centers are as far apart as their signed radii differ. A circle
+ * touches a line if its center is its signed radius to the left. Both are linear in the curvature.
+ */
 std::optional<double> curvatureInto(const TPose2D& from, const Arc& into) {
   const TPoint2D left = leftOf(from.phi), point(from.x, from.y);
   double above = 0, below = 0;

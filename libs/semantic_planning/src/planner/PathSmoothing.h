@@ -28,9 +28,9 @@ struct TangentArc {
  * its direction. Nothing if there is none, or if it turns by more than half a circle and a half. */
 std::optional<TangentArc> tangentArc(const mrpt::math::TPose2D& from, const Arc& into);
 
-/** A path of lower price whose steering changes less often and turns less: stretches of constant
- * curvature between two others are replaced by one that is tangent to both, as long as motion cost
- * and classes together cost less. Gears stay as they are, and so do ways backwards. */
+/** A path of lower price whose steering changes less often and turns less. A stretch of constant
+ * curvature that is tangent to two others replaces what lies between, if motion and classes
+ * together cost less. Gears stay as they are, and so do ways backwards. */
 std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const CollisionChecker& checker,
                           const ClassPrices& prices);
 

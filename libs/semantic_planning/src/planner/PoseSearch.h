@@ -9,8 +9,8 @@
 
 namespace semantic_planning {
 
-/** A way from one pose to the other, if one is found in a few thousand poses: from the start on, or
- * else from the goal, for a vehicle gets out of a narrow place sooner than into it. */
+/** A way from one pose to the other, if one is found in a few thousand poses. It is looked for from
+ * the start, then from the goal: a vehicle gets out of a narrow place sooner than into it. */
 std::vector<PathPoint> wayBetween(const GroundPose& start, const GroundPose& goal,
                                   const CollisionChecker& checker, const ClassPrices& prices);
 

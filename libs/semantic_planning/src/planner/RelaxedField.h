@@ -19,10 +19,10 @@
 
 namespace semantic_planning {
 
-/** Hands out what has the least key, and of that what came last; no key may be less than the last
- * one that it handed out. Keys that differ from that in the same highest bit share a bucket, which
- * is dealt out when its turn comes (the radix heap of Ahuja et al., "Faster algorithms for the
- * shortest path problem", 1990): that touches less memory than a binary heap. */
+/** Hands out what has the least key, the last that came among equals. No key may be less than the
+ * last one that it handed out. Keys that differ from that in the same highest bit share a bucket,
+ * which is dealt out when its turn comes. It touches less memory than a binary heap (radix heap:
+ * Ahuja et al., "Faster algorithms for the shortest path problem", 1990). */
 template <class Value>
 class MonotoneQueue {
  public:
@@ -172,10 +172,9 @@ inline RelaxedField::Label& RelaxedField::label(const Cell& cell) {
   return tile.labels[cell.index];
 }
 
-/** The least that the rest of a way may cost from the ground around a place on, for a vehicle that
- * could turn on the spot and needs no more room than its origin does, however it stands: classes
- * under its wheels and length count. What
- * nobody asks for is not found out. */
+/** The least that the rest of a way may cost from the ground around a place on. The vehicle could
+ * turn on the spot, and needs no more room than its origin does, however it stands. Classes under
+ * its wheels and length count. What nobody asks for is not found out. */
 class CostField {
  public:
   using Length = colored_graph::Length;
@@ -283,8 +282,8 @@ constexpr std::int64_t kWeightOfLength = 16;
 std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order);
 
 /** From column to column in eight directions, wherever there is ground: the way of least price. It
- * knows no turning radius. Steps are about as long as half the vehicle is wide where nothing is
- * near, and by single columns where those find none, or if they are all that is asked for.
+ * knows no turning radius. Where nothing is near, steps are about as long as half the vehicle
+ * is wide. They are single columns where those find no way, or if they are asked for.
  * \param overForbidden also over what the order forbids, at the price of the worst rank */
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
                           const GroundPose& goal, bool overForbidden = false,

@@ -8,8 +8,8 @@
 
 namespace semantic_planning {
 
-/** The k nearest poses of each pose, in Reeds-Shepp distance up to a radius, exactly (ties go by
- * the poses' order, whatever their ids are), while poses come and go. */
+/** Each pose's k nearest poses, in Reeds-Shepp distance up to a radius, exactly, while poses come
+ * and go. Ties go by the poses' order, whatever their ids are. */
 class NearestPoses {
  public:
   using VertexId = colored_graph::VertexId;

@@ -44,7 +44,7 @@ class SegmentWalk {
   }
 
   /** f(placement, how many pieces are left) in the middle of pieces `first` to `end` - 1 of a
-   * curve; f returns how many pieces to go on by, at most those that are left, or 0: no farther.
+   * curve. It returns how many pieces to go on by, at most those that are left, or 0: no farther.
    * \param before what the curve has of length before this segment \return whether it came to
    * its end */
   template <class F>

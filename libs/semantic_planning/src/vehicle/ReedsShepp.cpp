@@ -268,9 +268,8 @@ double positive(double angle) {
   return turned > kTurn - kSameTurn ? 0 : turned;
 }
 
-/** Finds the shortest of the six words of Dubins (1957), which only go forward: solves those for
- * curves that begin with an arc to the left; those that begin to the right are their mirror images.
- */
+/** Finds the shortest of the six words of Dubins (1957), which only go forward. It solves the words
+ * that begin with an arc to the left; the others are their mirror images. */
 class ForwardSearch {
  public:
   ForwardSearch(const TPose2D& from, const TPose2D& to) {

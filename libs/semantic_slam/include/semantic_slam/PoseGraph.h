@@ -46,7 +46,7 @@ Eigen::Isometry3d rigid(const Eigen::Isometry3d& T);
 double squaredError(const PoseEdge& edge, const std::vector<Eigen::Isometry3d>& poses);
 
 /** Moves poses so that sum_e rho(e^T information e) becomes least, with e = vectorOf(T_a_b^-1
- * T_a^-1 T_b) and rho the square, or for doubtful edges Cauchy's log(1 + x / c^2) c^2. Gauss-Newton
+ * T_a^-1 T_b). rho is the square, or for doubtful edges Cauchy's log(1 + x / c^2) c^2. Gauss-Newton
  * with Levenberg's damping (Grisetti et al., "A Tutorial on Graph-Based SLAM"). The first pose
  * stays, but for edges from PoseEdge::kMap. \throw std::invalid_argument an edge of poses that are
  * not there. */

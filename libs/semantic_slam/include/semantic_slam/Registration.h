@@ -136,8 +136,8 @@ struct Registration {
  * their classes become least, by Gauss-Newton with Geman and McClure's weights. (P2D-NDT:
  * Magnusson, "The Three-Dimensional Normal-Distributions Transform"; with classes as in Zaganidis
  * et al., "Integrating Deep Semantic Segmentation into 3-D Point Cloud Registration".) One point is
- * taken of each cube half as large as the finest submap's, or for a coarser submap as the next
- * finer one's. Scans in a plane are taken whole.
+ * taken of each cube. It is half as large as the finest submap's, or as the next finer one's for a
+ * coarser submap. Scans in a plane are taken whole.
  * \param submaps of the same points, coarse ones first; each begins where the one before ended
  * \param prior information of the guess, frame of the scan */
 Registration registerScan(const std::vector<const Submap*>& submaps, const LabeledCloud& scan,

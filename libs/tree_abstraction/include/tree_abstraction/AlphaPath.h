@@ -37,8 +37,7 @@ inline double alphaBetween(double low, double high) {
 }
 
 /** The compressed trees of all alphas, from the roots alone (tree 0) to that of alpha = 0 (the
- * last); or those of them in which some of the nodes come in, where all would be too many for
- * memory.
+ * last). Where all would be too many for memory, some of the trees.
  *
  * Each tree holds all nodes of the one before. Nodes whose taus agree but for rounding (1e-12) come
  * in together, so that every tree is that of some alpha. */

@@ -107,10 +107,10 @@ double informationOfTree(const std::vector<TreeCell>& cells);
  * \param cells without regard to their parents \param beams indices of cells in order */
 Bounds informationOfNet(const std::vector<TreeCell>& cells,
                         const std::vector<std::vector<int>>& beams);
-/** (h): what a view is expected to add to the objective of the tree that has the cells as leaves,
- * as equal shares of its space, but for the price of leaves: sum of weights times I_Y(T). The upper
- * bound has what is told of each cell; how far the mean over all cells moves, which is less, is not
- * taken off.
+/** (h): what a view is expected to add to sum of weights times I_Y(T), the objective without the
+ * price of leaves. The tree has the cells as leaves, as equal shares of its space. The upper bound
+ * has what is told of each cell. How far the mean over all cells moves, which is less, is not taken
+ * off.
  * \param beliefs K + 1 probabilities of each cell, as the map has them \param reached P(reached) of
  * each \param counts for how many cells of the tree each stands */
 Bounds growthOfTree(const Question& question, const BeamModel& model,

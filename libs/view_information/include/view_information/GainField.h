@@ -61,10 +61,10 @@ double gainOfHeading(const SectorGains& gains, int sector, double width);
 /** The heading of a sector's middle, radians. */
 double headingOf(int sector);
 
-/** What observing each known voxel of a map gains once more, and how far beams get through it, in
- * tiles of 8 x 8 x 8 that follow the map's changes. Half a tile is a byte a voxel and the values
- * that are in it, or one value: less than four bytes a known voxel. Not thread safe; the map must
- * not change during a call. */
+/** What one more look at each known voxel of a map gains, and how far beams get through it. Tiles
+ * of 8 x 8 x 8 voxels follow the map's changes. Half a tile is a byte a voxel and the values in it,
+ * or one value: less than four bytes a known voxel. Not thread safe; the map must not change during
+ * a call. */
 class GainField {
  public:
   /** \param map must outlive this. */
@@ -77,10 +77,10 @@ class GainField {
   /** What views from a voxel gain: each voxel counts once, as surely as it is reached. */
   SectorGains sweep(const ViewTemplate& view, UnknownPrior& prior,
                     const octomap::OcTreeKey& from) const;
-  /** What a view from a voxel along a sector's middle is expected to add to the objective of a
-   * compressed tree of the question's weights: growthOfTree() of the template's voxels, each for
-   * those that it stands for, nats summed over these. The prior says which are reached, the map
-   * what is believed of them. */
+  /** What a view from a voxel along a sector's middle is expected to add to a compressed tree's
+   * objective by the question's weights. It is growthOfTree() of the template's voxels, in nats
+   * summed over the voxels that each stands for. The prior says which are reached, the map what is
+   * believed of them. */
   Bounds growth(const ViewTemplate& view, UnknownPrior& prior, const octomap::OcTreeKey& from,
                 int sector) const;
 

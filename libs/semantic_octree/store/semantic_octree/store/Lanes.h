@@ -33,7 +33,7 @@ MSO_INLINE void store(const Lanes& x, double* p) { std::memcpy(p, &x, sizeof x);
 /** ln x for normal x > 0, within a few units of the last place.
  *
  * x = 2^k m with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(s) with s = (m - 1) / (m + 1), by its
- * series: |s| < 0.172, so that the first term left out is below 1e-17. */
+ * series. As |s| < 0.172, the first term left out is below 1e-17. */
 MSO_INLINE Lanes logOf(const Lanes& x) {
   constexpr std::int64_t kOne = 0x3ff0000000000000, kSqrtHalf = 0x3fe6a09e667f3bcd;
   constexpr std::int64_t kMantissa = 0x000fffffffffffff, kTwo52 = 0x4330000000000000;

@@ -76,8 +76,8 @@ struct CubeContent {
   void add(CubeContent part) { flags |= part.any() ? part.flags : kNotAllFree; }
 };
 
-/** Summary of a scan's tiles at every level of the tree above them: level 0 are the tiles, a cube
- * of level l has a side of 8 * 2^l voxels, level 13 is the whole map. */
+/** Summary of a scan's tiles at every level of the tree above them. Level 0 are the tiles, level 13
+ * is the whole map. A cube of level l has a side of 8 * 2^l voxels. */
 class ScanPyramid {
  public:
   static constexpr int kTopLevel = 13;

@@ -77,9 +77,9 @@ class Ground {
   int step() const { return m_step; }
   /** Largest distance in voxels that surfaces know (Surface::clearance2). */
   int largestClearance() const { return m_largestClearance; }
-  /** Whether a disc of this radius (meters), its center anywhere in the surface's column, keeps the
-   * vehicle's clearance from walls, steps, steep and perhaps forbidden ground, and from what is not
-   * known to be ground. */
+  /** Whether a disc of this radius (meters) has the vehicle's clearance, wherever in the surface's
+   * column its center is: from walls, steps, steep and perhaps forbidden ground, and from what is
+   * not known to be ground. */
   bool hasClearance(const Surface& surface, double radius) const {
     const double needed = (radius + m_clearance) / m_voxelSize;
     return surface.drivable && surface.clearance2 >= needed * needed;

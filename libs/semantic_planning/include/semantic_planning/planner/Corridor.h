@@ -34,8 +34,8 @@ struct CorridorTask {
  * one tile of ground to the next. In each tile parts are told apart between which a vehicle that
  * can turn on the spot does not get within the tile; one has the best class that is there from one
  * side to the other. The ground is made square by square (512 columns a side) when the search comes
- * there, and forgotten but for its parts: of a map in a folder of tiles little more than a square
- * is looked at, at a time.
+ * there, and forgotten but for its parts. So little more than a square of a map in tiles is needed
+ * at a time.
  *
  * If there is no way, or if start or goal are not on drivable ground, the corridor is around these
  * two; a plan in it says what is the matter.

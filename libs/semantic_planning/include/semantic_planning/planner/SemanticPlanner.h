@@ -52,12 +52,12 @@ class PlannerCore;
  *     }
  *
  * A plan to another goal makes a roadmap of its own. What does not depend on start and goal is kept
- * for the next plan until the map changes there: points for vertices (but not in a corridor, where
- * memory is short); answers are those of a new planner. One that
- * runs out of memory, or whose `cancelled` throws, is broken: all further calls throw
- * std::logic_error. Not thread safe. While a call reads the map, another thread that changes it
- * gets std::logic_error, and the other way round (ReadLock). A map may have any number of planners,
- * and other readers of its changes (MapFollower). */
+ * for the next plan until the map changes there: points for vertices, but not in a corridor, where
+ * memory is short. Answers are those of a new planner. One that runs out of memory, or whose
+ * `cancelled` throws, is broken: all further calls throw std::logic_error. Not thread safe. While a
+ * call reads the map, another thread that changes it gets std::logic_error, and the other way round
+ * (ReadLock). A map may have any number of planners, and other readers of its changes
+ * (MapFollower). */
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a roadmap of the tree (isOfTree) it has to keep

@@ -52,8 +52,8 @@ class ReedsShepp {
   /** A lower bound of distance() that costs next to nothing. */
   double lowerBound(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
   /** A shortest curve. Where there are several, as left-right-left and right-left-right with two
-   * cusps between many poses close to each other, always the same one; but for goals straight ahead
-   * or aside the one from b to a may be another. */
+   * cusps between close poses, always the same one. Only for goals straight ahead or aside may the
+   * one from b to a be another. */
   ReedsSheppCurve connect(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
   /** A shortest one of the curves that only go forward (Dubins, "On curves of minimal length with
    * a constraint on average curvature", 1957). */
