@@ -19,9 +19,11 @@ void* aligned_malloc(std::size_t bytes, std::size_t alignment);
 
 /** Replaces MRPT's own, whose matrices and depth images write to whatever it returns. If a damaged
  * file asks for more than there is, MRPT's returns null; if for less, gigabytes of zeros.
- * \throw std::bad_alloc there is no memory; PieceTooLarge: it is more than any image takes */
+ * \throw std::bad_alloc there is no memory; PieceTooLarge: it is more than any image
+ * takes, or the file has */
 void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
-  if (bytes > AllocationLimit::kMost) throw PieceTooLarge();  // 16384 x 16384 distances
+  // 16384 x 16384 distances
+  if (bytes > AllocationLimit::kMost || !AllocationLimit::isAllowed(bytes)) throw PieceTooLarge();
   // aligned_alloc() is defined for multiples of the alignment.
   const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
   void* const memory = std::aligned_alloc(alignment, whole);
@@ -39,7 +41,7 @@ void* allocate(std::size_t size) noexcept {
 
 void* allocateOrThrow(std::size_t size) {
   if (!AllocationLimit::isAllowed(size)) throw PieceTooLarge();
-  void* const memory = allocate(size);
+  void* const memory = std::malloc(size ? size : 1);
   if (!memory) throw std::bad_alloc();
   return memory;
 }

@@ -145,7 +145,7 @@ TEST(Words, messagesTellWhatMemoryIsWanting) {
   using strict_files::messageOf;
   EXPECT_EQ(messageOf(std::bad_alloc()), "more memory is needed than there is");
   EXPECT_EQ(messageOf(strict_files::PieceTooLarge()),
-            "more than 1 GiB of memory is asked for at once, as a damaged file makes it");
+            "more memory is asked for than the file is worth, as a damaged one makes it");
   const std::system_error noThread(std::make_error_code(std::errc::resource_unavailable_try_again));
   EXPECT_EQ(messageOf(noThread).rfind("no further thread can be begun", 0), 0u);
 }

@@ -6,12 +6,21 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace strict_files {
 
-int& AllocationLimit::living() {
-  thread_local int count = 0;
-  return count;
+AllocationLimit::Allows*& AllocationLimit::current() {
+  thread_local Allows* limit = nullptr;
+  return limit;
+}
+
+bool AllocationLimit::isAllowed(std::size_t bytes) {
+  Allows* const limit = std::exchange(current(), nullptr);  // its own memory is not asked for
+  if (!limit) return true;
+  const bool isAllowed = bytes <= kMost && (*limit)(bytes);
+  current() = limit;
+  return isAllowed;
 }
 
 namespace {

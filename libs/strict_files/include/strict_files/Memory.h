@@ -1,35 +1,39 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <new>
 
 namespace strict_files {
 
-/** A single piece of memory is refused for its size, however much there is. */
+/** A piece of memory is refused for its size, however much there is. */
 class PieceTooLarge : public std::bad_alloc {
  public:
   const char* what() const noexcept override {
-    return "more than 1 GiB of memory is asked for at once, as a damaged file makes it";
+    return "more memory is asked for than the file is worth, as a damaged one makes it";
   }
 };
 
-/** While one lives, its thread gets no single piece of memory of more than 1 GiB, in programs whose
- * operator new asks isAllowed(), as those of this project do. For what others read from files that
- * may be damaged: they make room for as many elements as a file says it has. */
+/** While one lives, its thread gets only memory that it allows, and no single piece of more than 1
+ * GiB, in programs whose operator new asks isAllowed(), as those of this project do. For what
+ * others read from files that may be damaged: they make room for as many elements as a file says it
+ * has. One at a time. */
 class AllocationLimit {
  public:
   static constexpr std::size_t kMost = std::size_t{1} << 30;  ///< bytes
+  using Allows = std::function<bool(std::size_t)>;            ///< may take memory itself
 
-  AllocationLimit() { ++living(); }
-  ~AllocationLimit() { --living(); }
+  /** \param allows outlives this */
+  explicit AllocationLimit(Allows& allows) { current() = &allows; }
+  ~AllocationLimit() { current() = nullptr; }
   AllocationLimit(const AllocationLimit&) = delete;
   AllocationLimit& operator=(const AllocationLimit&) = delete;
 
-  static bool isAllowed(std::size_t bytes) { return bytes <= kMost || living() == 0; }
+  static bool isAllowed(std::size_t bytes);
 
  private:
   /** In this thread. */
-  static int& living();
+  static Allows*& current();
 };
 
 /** Bytes of memory that this process could still take: what the system has left, and no more than

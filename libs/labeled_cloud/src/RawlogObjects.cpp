@@ -1,0 +1,143 @@
+#include "RawlogObjects.h"
+
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPosePDF.h>
+
+#include <strict_files/Words.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace labeled_cloud {
+
+using mrpt::obs::CAction;
+using mrpt::obs::CActionCollection;
+using mrpt::obs::CObservation;
+using mrpt::obs::CSensoryFrame;
+using mrpt::rtti::TRuntimeClassId;
+using mrpt::serialization::CSerializable;
+
+/** Lists that grow take twice what is in them; pointers, short texts and particles need more than
+ * they have in the file. */
+bool MemoryOfObjects::allows(std::size_t piece, std::uint64_t delivered) {
+  constexpr std::size_t kLarge = 16 << 20, kSmallOnes = 64 << 20, kPerByte = 4,
+                        kPerByteOfSmall = 64;
+  if (piece > kLarge) return unpacksTo(piece / kPerByte);
+  m_small += piece;
+  return m_small <= kSmallOnes + kPerByteOfSmall * delivered;
+}
+
+bool MemoryOfObjects::unpacksTo(std::uint64_t size) try {
+  if (!m_ahead) m_ahead = std::make_unique<CompressedInputStream>(m_file);
+  std::array<char, 1 << 14> some{};
+  while (m_ahead->delivered() < size)
+    if (m_ahead->Read(some.data(), some.size()) == 0) return false;
+  return true;
+} catch (const std::exception&) {
+  return false;  // it is no longer there
+}
+
+namespace {
+
+constexpr char kHasEnd = '\x80', kEnd = '\x88';  ///< in front of a class's name, behind its object
+
+bool isA(const TRuntimeClassId* id, const TRuntimeClassId* kind) {
+  return id && kind && id->derivedFrom(kind);
+}
+
+bool isValue(const TRuntimeClassId* id) {
+  const std::string name = id->className;
+  for (const char* space : {"mrpt::poses::", "mrpt::math::", "mrpt::img::"})
+    if (name.rfind(space, 0) == 0) return true;
+  return isA(id, mrpt::rtti::findRegisteredClass("mrpt::maps::CPointsMap"));
+}
+
+}  // namespace
+
+void RawlogObjects::expect(bool holds, const std::string& problem) {
+  if (holds) return;
+  if (m_problem.empty()) m_problem = problem;
+  throw std::runtime_error(problem);
+}
+
+CSerializable::Ptr RawlogObjects::next() {
+  const char here = 0;
+  m_stack = &here;
+  char length = 0;
+  if (take(&length, 1) == 0) return nullptr;
+  expect((length & kHasEnd) != 0, "it is no rawlog");
+  std::string name(length & 0x7f, '\0');
+  expect(take(name.data(), name.size()) == name.size(), "the file is cut off");
+  const TRuntimeClassId* id = mrpt::rtti::findRegisteredClass(name);
+  if (id && id == CLASS_ID(CSensoryFrame)) return listOf<CSensoryFrame, CObservation>(2);
+  if (id && id == CLASS_ID(CActionCollection)) return listOf<CActionCollection, CAction>(0);
+  m_begin = length + name;
+  CSerializable::Ptr object = ReadObject();
+  expect(object != nullptr, "an empty object");
+  return object;
+}
+
+/** As MRPT writes them: version, number, the objects, a mark. */
+template <class List, class Content>
+std::shared_ptr<List> RawlogObjects::listOf(int version) {
+  auto list = std::make_shared<List>();
+  const std::string kind = list->GetRuntimeClass()->className;
+  expect(ReadAs<std::int8_t>() == version, "a " + kind + " of another version than this MRPT's");
+  for (auto n = ReadAs<std::uint32_t>(); n > 0; --n) {
+    const auto object = ReadObject<Content>();
+    expect(object != nullptr, "what is in a " + kind + " is nothing, or does not belong there");
+    if constexpr (std::is_same_v<Content, CAction>)
+      list->insert(*object);
+    else
+      list->insert(object);
+  }
+  expect(static_cast<char>(ReadAs<std::int8_t>()) == kEnd, "the end of a " + kind + " is missing");
+  return list;
+}
+
+std::size_t RawlogObjects::take(char* buffer, std::size_t size) {
+  const std::size_t first = m_begin.copy(buffer, size);
+  m_begin.erase(0, first);
+  return first < size ? first + m_stream.Read(buffer + first, size - first) : first;
+}
+
+/** Whether an object of this class may come now. MRPT follows what a movement's estimate is, unless
+ * the number in front of it says that it is odometry. */
+bool RawlogObjects::mayCome(const std::string& className) {
+  const TRuntimeClassId* id = mrpt::rtti::findRegisteredClass(className);
+  const bool isOdometry = m_past == std::string(4, '\0');
+  if (m_isMovement && !isOdometry && !isA(id, CLASS_ID(mrpt::poses::CPosePDF))) return false;
+  m_isMovement = id && id == CLASS_ID(mrpt::obs::CActionRobotMovement2D);
+  return !id || isA(id, CLASS_ID(CObservation)) || isA(id, CLASS_ID(CAction)) || isValue(id);
+}
+
+/** No bytes if there are none, or if they must not be read. */
+std::size_t RawlogObjects::read(void* buffer, std::size_t size) {
+  constexpr std::ptrdiff_t kDeepest = 1 << 18;  // bytes of the stack
+  const char here = 0;
+  const bool isDeep = m_stack - &here > kDeepest;
+  if (isDeep) m_problem = "objects in objects in objects";
+  if (!m_problem.empty()) return 0;
+  const std::size_t done = take(static_cast<char*>(buffer), size);
+  if (done < size) m_problem = "the file is cut off";
+  const std::string bytes(static_cast<const char*>(buffer), std::min<std::size_t>(done, 0x7f));
+  if (m_last == std::string(1, static_cast<char>(kHasEnd | size)) && !mayCome(bytes)) {
+    m_problem = "a " + strict_files::printable(bytes) + " does not belong there";
+    return 0;
+  }
+  m_past = std::exchange(m_last, bytes);
+  return done;
+}
+
+std::size_t RawlogObjects::write(const void*, std::size_t) {
+  throw std::logic_error("RawlogObjects: cannot be written to");
+}
+
+}  // namespace labeled_cloud
