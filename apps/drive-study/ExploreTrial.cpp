@@ -104,8 +104,13 @@ class Glide {
   }
 
   void look() {
-    for (const auto& seen : m_sensors.sense(m_world, T_world_robot()))
-      m_map.insert(seen.cloud, T_world_robot() * seen.T_robot_sensor, m_config.insertion);
+    for (const auto& seen : m_sensors.sense(m_world, T_world_robot())) {
+      semantic_octree::InsertionOptions options = m_config.insertion;
+      if (m_config.sensors.emptyCarves)
+        options.maxRange =
+            std::min(options.maxRange > 0 ? options.maxRange : HUGE_VAL, seen.emptyFrom);
+      m_map.insert(seen.cloud, T_world_robot() * seen.T_robot_sensor, options);
+    }
     m_planner.update();
     m_lookedAt = m_meters;
     m_trial.known.push_back({m_meters, m_known.share()});
