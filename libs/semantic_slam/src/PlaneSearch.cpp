@@ -161,6 +161,8 @@ class PlaneSearch::Search {
     const auto known = around(place, least);
     return known && best(least, *known).level == kNone;
   }
+  /** That it took so far, points. */
+  std::size_t looks() const { return (m_most - m_left + m_inRows / kRows) * m_cells[0].size(); }
   Eigen::Vector3d offsetOf(const Candidate& c) const {
     return {c.x * m_grid.m_cell, c.y * m_grid.m_cell, (c.angle - m_angles) * kAngleStep};
   }
@@ -169,7 +171,7 @@ class PlaneSearch::Search {
   static bool isWorse(const Candidate& a, const Candidate& b) { return a.score < b.score; }
 
   /** As many of the best as a search gets to before it gives up. */
-  std::vector<Candidate> coarsest(int least) const {
+  std::vector<Candidate> coarsest(int least) {
     const std::size_t most = m_most / 4 + 1;
     std::vector<Candidate> open;
     std::vector<int> scores;
@@ -183,6 +185,7 @@ class PlaneSearch::Search {
         above = std::count_if(scores.begin(), scores.end(), [=](int s) { return s > least; });
       } while (level > finest && kRows * above > static_cast<std::ptrdiff_t>(scores.size()));
       const int n = numSquares(level);
+      m_inRows += scores.size() * 4 / 3;  // coarser levels have a quarter
       for (int i = 0; above > 0 && i < n * n; ++i)
         if (scores[static_cast<std::size_t>(i)] > lowest)
           open.push_back({level, angle, (i % n << level) - m_radius, (i / n << level) - m_radius,
@@ -298,19 +301,23 @@ class PlaneSearch::Search {
   const PlaneSearch& m_grid;
   int m_radius, m_angles;
   std::size_t m_most, m_left;                             ///< squares that may be looked at
+  std::size_t m_inRows = 0;                               ///< that were, in rows
   std::vector<std::vector<std::pair<int, int>>> m_cells;  ///< of the scan, turned by each angle
   std::vector<Candidate> m_coarsest;
   int m_coarsestLeast = INT_MAX;
 };
 
 auto PlaneSearch::find(const PlanePoints& scan, const Eigen::Vector3d& guess, const Window& window,
-                       double least, std::size_t mostLooks) const -> std::optional<Found> {
+                       double least, std::size_t& looks) const -> std::optional<Found> {
   if (scan.empty() || m_width == 0) return std::nullopt;
-  Search search(*this, scan, guess, window, mostLooks);
+  Search search(*this, scan, guess, window, looks);
   const double highest = kBest * static_cast<double>(scan.size());
   const auto best = search.best(static_cast<int>(least * highest));
-  if (best.level < 0) return std::nullopt;
-  return Found{guess + search.offsetOf(best), best.score / highest, search.isAlone(best)};
+  std::optional<Found> found;
+  if (best.level >= 0)
+    found = {guess + search.offsetOf(best), best.score / highest, search.isAlone(best)};
+  looks -= std::min(looks, search.looks());
+  return found;
 }
 
 }  // namespace semantic_slam

@@ -36,11 +36,16 @@ class PlaneSearch {
   };
   /** \param guess x, y (m) and heading (radians) of the scan
    * \param least share of the points' highest score that a fit has at least
-   * \param mostLooks points that are looked up before it gives up. Whole levels, which are looked
-   * up in rows, may take as long again. \return nothing if none fits so well, or it gave up */
+   * \param looks points that may be looked up before it gives up, less those that were. Whole
+   * levels, which are looked up in rows, may take as long again, and count as well.
+   * \return nothing if none fits so well, or it gave up */
   std::optional<Found> find(const PlanePoints& scan, const Eigen::Vector3d& guess,
-                            const Window& window, double least,
-                            std::size_t mostLooks = kMostLooks) const;
+                            const Window& window, double least, std::size_t& looks) const;
+  std::optional<Found> find(const PlanePoints& scan, const Eigen::Vector3d& guess,
+                            const Window& window, double least) const {
+    std::size_t looks = kMostLooks;
+    return find(scan, guess, window, least, looks);
+  }
 
   /** Several times what a quarter of a kilometer of trees and fences takes where nothing fits. */
   static constexpr std::size_t kMostLooks = 3'000'000'000;

@@ -2,6 +2,7 @@
 
 #include <semantic_slam/SlamOptions.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -95,7 +96,12 @@ std::vector<std::string> SlamReport::warnings() const {
   if (standing > kMostStanding)
     warnings.push_back("odometry stood still while the robot drove " + tenths(standing) +
                        " m by its scans: the map may be wrong there");
-  if (hasOdometry && way > kLeastWay && std::abs(wayError) > kMostWrong)
+  const double wayOfOdometry = way * std::abs(1 + wayError);
+  if (wayError < -1 && way > kLeastWay)
+    warnings.push_back(
+        "scans move backward where odometry goes ahead: the sensor's pose on the robot is wrong");
+  else if (hasOdometry && std::max(way, wayOfOdometry) > kLeastWay &&
+           std::abs(wayError) > kMostWrong)
     warnings.push_back("odometry says " + percent(std::abs(wayError)) +
                        (wayError > 0 ? " more" : " less") + " way than the scans do");
   if (hasOdometry && way > kLeastWay && std::abs(turnError) > kMostWrong)
@@ -108,10 +114,13 @@ std::vector<std::string> SlamReport::warnings() const {
 SlamReport SlamEngine::report() const {
   SlamReport report = m_report;
   report.keyframes = m_keyframes.size();
+  const auto gaps = this->gaps();
+  report.joined = gaps.size();
+  for (const double gap : gaps) report.carried = std::max(report.carried, gap);
   if (!m_keyframes.empty()) report.torn += report.joined + parts().size() - 1;
   report.hasOdometry = m_hasOdometry;
   report.isPlanar = m_scale.isPlanar;
-  if (m_wayOfScans > 0) report.wayError = m_wayOfOdometry / m_wayOfScans - 1;
+  if (m_wayOfScans != 0) report.wayError = m_wayOfOdometry / m_wayOfScans - 1;
   if (m_turnOfScans > 0) report.turnError = m_turnOfOdometry / m_turnOfScans - 1;
   return report;
 }

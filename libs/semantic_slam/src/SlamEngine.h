@@ -13,7 +13,7 @@ namespace semantic_slam {
 
 /** Share of a stretch's points where the place that it is compared with has some, at least. */
 constexpr double kCovered = 0.3;
-/** Points that a search looks up at most while the robot drives, a loop's a third: half a second of
+/** Points that all searches of a keyframe look up at most while the robot drives: half a second of
  * a desktop's core, so that scans need not wait. At the end each search has all that it needs. */
 constexpr std::size_t kLiveLooks = 300'000'000;
 
@@ -124,6 +124,8 @@ class SlamEngine {
   bool holdsAcross(std::size_t first) const;
   /** A piece begins, which nothing but odometry connects to what was before. */
   void tearAt(std::size_t first);
+  /** Between pieces, by more than odometry errs in a step: m from where it leads across. */
+  std::vector<double> gaps() const;
   /** Keyframes, in their order, that more than odometry connects. */
   using Part = std::vector<std::size_t>;
   /** All keyframes are in one; the largest first. */
@@ -154,7 +156,7 @@ class SlamEngine {
   static std::vector<Stretch> stretchesOf(const Part& part);
   /** Where what a stretch saw fits best. */
   std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes,
-                                      std::size_t mostLooks = PlaneSearch::kMostLooks);
+                                      std::size_t& looks);
 
   // --- Loops and the reference ---
   bool closeLoops();
@@ -170,7 +172,7 @@ class SlamEngine {
     std::size_t first, last;  ///< keyframes that it was compared with
   };
   std::optional<Look> lookAround(std::size_t place, std::size_t keyframe, const Seen& stretch,
-                                 const PlaneSearch::Window& window) const;
+                                 const PlaneSearch::Window& window, std::size_t& looks) const;
   std::optional<PoseEdge> edgeOf(const Look& look, const Seen& stretch, std::size_t keyframe) const;
   /** At the end, where nothing leads from a place to one of before beside it: drift that hid it
    * from the robot is gone with other loops. \return whether poses moved */
@@ -180,16 +182,17 @@ class SlamEngine {
   /** What two looks at least contradict the poses by, m; 0: next to nothing. */
   double apartBy(const std::vector<PoseEdge>& looks) const;
   /** Searches the newest keyframe's stretch around a place. */
-  std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch, double way);
+  std::optional<PoseEdge> edgeTo(std::size_t place, const Seen& stretch, double way,
+                                 std::size_t& looks);
   /** Registers a keyframe's stretch to what some keyframes saw, nearest to a guess.
    * \param beside so many of them to each side */
   std::optional<PoseEdge> edgeNear(const Pose& T_map_guess, std::size_t first, std::size_t last,
                                    std::size_t beside, const Seen& stretch, std::size_t keyframe,
                                    double leastMatched) const;
-  /** From the newest keyframe to each, m: the shortest way along steps and loops. The poses of both
+  /** From a keyframe to each, m: the shortest way along steps and loops. The poses of both
    * are off by what was driven on it (Bosse et al., "Simultaneous Localization and Map Building in
    * Large-Scale Cyclic Environments Using the Atlas Framework", 2004). */
-  std::vector<double> waysFromNewest() const;
+  std::vector<double> waysFrom(std::size_t keyframe) const;
   /** To each side, in a stretch. */
   std::size_t keyframesBeside() const {
     return static_cast<std::size_t>(m_scale.submapKeyframes / 2);
@@ -247,6 +250,7 @@ class SlamEngine {
   double m_lastLook = 0, m_lastReferenced = 0;                ///< m of the way
   double m_lastWholeLook = 0;                                 ///< when all of a window was searched
   double m_lostWay = 0;                                       ///< m where scans fit nothing
+  std::size_t m_looks = 0;                                    ///< left for this keyframe
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;  ///< they may be wrong
   bool m_isOptimized = true;
   std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece

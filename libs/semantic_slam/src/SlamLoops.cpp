@@ -23,8 +23,8 @@ constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngl
 /** Without registration the robot may be off as after so many times the way more. */
 constexpr double kLostMore = 9;
 constexpr std::size_t kMostPlaces = 3;
-/** Cells of the grid: the window in which loops that are left are searched at the end, and how far
- * off one has to be that the map is said to be wrong. */
+/** Least window in which a loop that is left is searched at the end, and how far off what it finds
+ * has to be that the map is said to be wrong; cells of the grid. */
 constexpr double kLeftWindow = 20, kApart = 3;
 /** Share of the highest score where poses are right already, by the first window; and where they
  * would move, of what the stretch has in itself: people and noise fit nowhere. What goes on into a
@@ -59,10 +59,10 @@ auto SlamEngine::pointsOf(std::size_t first, std::size_t last, std::size_t frame
   return all;
 }
 
-std::vector<double> SlamEngine::waysFromNewest() const {
+std::vector<double> SlamEngine::waysFrom(std::size_t keyframe) const {
   const std::size_t map = m_keyframes.size();
   std::vector<double> ways(map + 1, std::numeric_limits<double>::infinity());
-  ways[map - 1] = 0;
+  ways[keyframe] = 0;
   bool isShorter = true;
   const auto relax = [&](const PoseEdge& edge) {
     double &a = ways[std::min(edge.a, map)], &b = ways[edge.b];
@@ -110,14 +110,18 @@ bool SlamEngine::closeLoops() {
   const double way = m_keyframes[newest].way;
   if (way < m_lastLook + kLookEvery * m_scale.keyframeDistance) return false;
   m_lastLook = way;
-  const auto ways = waysFromNewest();
+  const auto ways = waysFrom(newest);
   const auto places =
       placesOf(newest, [&](std::size_t k) { return 1.4 * windowAfter(ways[k]).radius; });
   if (places.empty()) return false;
   const Seen stretch = pointsOf(newest - std::min(newest, keyframesBeside()), newest, newest);
   bool moved = false;
-  for (const std::size_t place : places)
-    if (const auto edge = edgeTo(place, stretch, ways[place])) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t place = places[i], share = m_looks / (places.size() - i);
+    std::size_t looks = share;
+    const auto edge = edgeTo(place, stretch, ways[place], looks);
+    m_looks -= share - looks;
+    if (edge) {
       const std::size_t before = m_edges.size();
       moved |= confirm(m_pendingLoops, *edge);
       if (m_edges.size() == before) continue;
@@ -128,6 +132,7 @@ bool SlamEngine::closeLoops() {
       m_report.loops += m_edges.size() - before;
       m_report.open = 0;
     }
+  }
   return moved;
 }
 
@@ -148,7 +153,8 @@ PlaneSearch::Window SlamEngine::windowAfter(double way) const {
 }
 
 auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen& stretch,
-                            const PlaneSearch::Window& window) const -> std::optional<Look> {
+                            const PlaneSearch::Window& window, std::size_t& looks) const
+    -> std::optional<Look> {
   const double wayNow = m_keyframes[keyframe].way;
   const Pose T_guess = m_poses[place].inverse() * m_poses[keyframe];
   // Seen from above, height and tilt aside.
@@ -166,9 +172,8 @@ auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen&
   while (last < place + reach && last + 1 < end &&
          wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
     ++last;
-  const auto found =
-      PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
-          .find(upright(level.cloud), guess, window, kLeastScore, kLiveLooks / kMostPlaces);
+  const auto found = PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
+                         .find(upright(level.cloud), guess, window, kLeastScore, looks);
   if (!found) return std::nullopt;
   Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
@@ -180,16 +185,18 @@ auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen&
               last};
 }
 
-std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way) {
+std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way,
+                                           std::size_t& looks) {
   const std::size_t newest = m_keyframes.size() - 1;
   const double wayNow = m_keyframes[newest].way;
   const PlaneSearch::Window whole = windowAfter(way);
   const double near = kNearWindow * m_scale.gridCell;
-  auto found = lookAround(place, newest, stretch, {std::min(whole.radius, near), whole.angle});
+  auto found =
+      lookAround(place, newest, stretch, {std::min(whole.radius, near), whole.angle}, looks);
   if (!found && whole.radius > near &&
       (wayNow == m_lastWholeLook || wayNow > m_lastWholeLook + kLookShare * whole.radius)) {
     m_lastWholeLook = wayNow;
-    found = lookAround(place, newest, stretch, whole);
+    found = lookAround(place, newest, stretch, whole, looks);
   }
   if (!found) return std::nullopt;
   if (found->off > kWindow * m_scale.gridCell && found->score < kMovingScore * ownScore())
@@ -208,8 +215,7 @@ std::optional<PoseEdge> SlamEngine::edgeOf(const Look& look, const Seen& stretch
 }
 
 bool SlamEngine::closeLeftLoops() {
-  const PlaneSearch::Window window{kLeftWindow * m_scale.gridCell, kAngle};
-  const auto isNear = [&](std::size_t) { return 1.4 * window.radius; };
+  const double least = kLeftWindow * m_scale.gridCell, most = kNearWindow * m_scale.gridCell;
   std::vector<PoseEdge> looks;
   bool moved = false;
   m_pendingLoops.clear();
@@ -217,11 +223,17 @@ bool SlamEngine::closeLeftLoops() {
   for (std::size_t k = 0; k < m_keyframes.size(); ++k) {
     if (m_keyframes[k].way < m_lastLook + kLookEvery * m_scale.keyframeDistance) continue;
     m_lastLook = m_keyframes[k].way;
-    for (const std::size_t place : placesOf(k, isNear)) {
+    const auto ways = waysFrom(k);
+    const auto windowOf = [&](std::size_t place) {
+      return PlaneSearch::Window{std::clamp(windowAfter(ways[place]).radius, least, most), kAngle};
+    };
+    for (const std::size_t place :
+         placesOf(k, [&](std::size_t at) { return 1.4 * windowOf(at).radius; })) {
       if (isClosed(place, k)) continue;
       const Seen stretch = pointsOf(k - std::min(k, keyframesBeside() / 2),
                                     std::min(k + keyframesBeside() / 2, m_keyframes.size() - 1), k);
-      const auto look = lookAround(place, k, stretch, window);
+      std::size_t budget = kLiveLooks / kMostPlaces;
+      const auto look = lookAround(place, k, stretch, windowOf(place), budget);
       const auto edge = look && look->isAlone ? edgeOf(*look, stretch, k) : std::nullopt;
       if (!edge) continue;
       looks.push_back(*edge);

@@ -81,6 +81,17 @@ void SlamEngine::tearAt(std::size_t first) {
   }
 }
 
+std::vector<double> SlamEngine::gaps() const {
+  std::vector<double> gaps;
+  for (const PoseEdge& edge : m_edges)
+    if (!edge.isDoubtful && std::binary_search(m_tears.begin(), m_tears.end(), edge.b)) {
+      const Eigen::Vector3d said = m_poses[edge.a] * edge.T_a_b.translation();
+      const double off = (m_poses[edge.b].translation() - said).norm();
+      if (off >= kErr) gaps.push_back(off);
+    }
+  return gaps;
+}
+
 auto SlamEngine::parts() const -> std::vector<Part> {
   const auto pieceOf = [this](std::size_t k) {
     const auto next = std::upper_bound(m_tears.begin(), m_tears.end(), k);
@@ -117,7 +128,7 @@ bool SlamEngine::joinPiece() {
   }
   const std::size_t length = std::min(newest - *m_piece, kSearched);
   const Places& places = placesOf(all[own == all.begin()]);
-  const auto found = findStretch(places, {newest - length, newest}, kLiveLooks);
+  const auto found = findStretch(places, {newest - length, newest}, m_looks);
   if (!found) return false;
   std::vector<PoseEdge> finds{*found};
   if (m_pendingPiece && agree(*m_pendingPiece, *found)) finds.push_back(*m_pendingPiece);
@@ -159,8 +170,6 @@ bool SlamEngine::join(const Part& part, const std::vector<PoseEdge>& finds) {
   const double carried = (T_moved * at - at).norm();
   if (carried >= kErr + kErrWay * way) {
     if (finds.size() < 2) return false;
-    ++m_report.joined;
-    m_report.carried = std::max(m_report.carried, carried);
     const bool stays = holdsMap(part);  // then all others come to it
     const Pose T = stays ? T_moved.inverse() : T_moved;
     for (std::size_t k = 0; k < m_poses.size(); ++k)
@@ -190,8 +199,10 @@ std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part)
   const Places& places = placesOf(others);
   const std::vector<Stretch> stretches = stretchesOf(part);
   std::vector<PoseEdge> finds, most;
-  for (const Stretch& stretch : stretches)
-    if (const auto found = findStretch(places, stretch)) finds.push_back(*found);
+  for (const Stretch& stretch : stretches) {
+    std::size_t looks = PlaneSearch::kMostLooks;
+    if (const auto found = findStretch(places, stretch, looks)) finds.push_back(*found);
+  }
   for (const PoseEdge& find : finds) {
     std::vector<PoseEdge> alike{find};
     for (const PoseEdge& other : finds)
@@ -225,7 +236,7 @@ auto SlamEngine::placesOf(const Part& part) -> const Places& {
 }
 
 std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes,
-                                                std::size_t mostLooks) {
+                                                std::size_t& looks) {
   const std::size_t last = keyframes.second;
   const Seen stretch = pointsOf(keyframes.first, last, last);
   const PlanePoints searched =
@@ -233,7 +244,7 @@ std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stre
   PlanePoints some;
   const std::size_t every = 1 + searched.size() / kMostPoints;
   for (std::size_t i = 0; i < searched.size(); i += every) some.push_back(searched[i]);
-  const auto found = places.search.find(some, places.middle, places.window, kFoundScore, mostLooks);
+  const auto found = places.search.find(some, places.middle, places.window, kFoundScore, looks);
   m_report.twofold += found && !found->isAlone;
   if (!found || !found->isAlone) return std::nullopt;
   const Pose T_map = poseOfFlat(found->pose);

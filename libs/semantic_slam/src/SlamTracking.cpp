@@ -129,6 +129,7 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
        registered ? ofScan + m_noise.information(T_last_robot) : guessed(T_last_robot)});
   if (isTorn()) m_local.clear();
   begin(now, rigid(m_poses.back() * T_last_robot), T_last_robot);
+  m_looks = kLiveLooks;
   const bool mended = mendPieces(), followed = followReference();
   return {last + 1, Pose::Identity(), true, closeLoops() || followed || mended, m_velocity};
 }
@@ -361,8 +362,10 @@ void SlamEngine::learn(const Pose& T_step, const Registration& registered) {
   // In space chance says a little of the way along a corridor without an end: it would be learnt.
   if (m_scale.isPlanar) m_noise.calibrate(m_T_odometry_step, T_step, T_off, registered.information);
   m_noise.note(T_step, T_off, registered.information);
-  m_wayOfOdometry += wayOf(m_T_odometry_step);
-  m_wayOfScans += wayOf(T_registered);
+  const double way = wayOf(m_T_odometry_step);
+  const auto ahead = T_registered.translation().dot(m_T_odometry_step.translation());
+  m_wayOfOdometry += way;
+  m_wayOfScans += way > 0 ? ahead / way : wayOf(T_registered);
   const double turn = vectorOf(T_registered)[5];
   if (std::abs(turn) < kSmall * m_scale.keyframeAngle) return;  // else noise would be summed up
   m_turnOfScans += std::abs(turn);
