@@ -46,6 +46,12 @@ SemanticOcTree mapOf(unsigned seed, int numScans, bool withAbstraction) {
   return map;
 }
 
+semantic_types::ClassTable halfLives() {
+  semantic_types::ClassTable classes = numberedClasses(5);
+  for (const semantic_types::ClassId id : {0, 1, 2}) classes.setHalfLife(id, 1);
+  return classes;
+}
+
 std::string bytesOf(const SemanticOcTree& map) {
   std::ostringstream out;
   writeTree(out, map);
@@ -98,12 +104,10 @@ TEST(FailingAllocations, whileAScanIsInsertedLeaveTheMapOrABrokenOne) {
 }
 
 TEST(FailingAllocations, whileAMapAgesLeaveTheMapOrABrokenOne) {
-  semantic_types::ClassTable halfLives = numberedClasses(5);
-  for (const semantic_types::ClassId id : {0, 1, 2}) halfLives.setHalfLife(id, 1);
   int broken = 0, failures = 0;
   for (const bool withAbstraction : {false, true}) {
     SemanticOcTree map = mapOf(4, 2, withAbstraction);
-    map.setHalfLives(halfLives);
+    map.setHalfLives(halfLives());
     failures += sweep(
         map, [](SemanticOcTree& m) { m.age(0.7); }, &broken);
   }
@@ -150,6 +154,7 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
   const auto begin = [&] {
     keyframes.reset();
     map.emplace(mapOf(9, 0, true));
+    map->setHalfLives(halfLives());
     keyframes.emplace(*map);
     keyframes->begin(T);
     keyframes->insert(a.cloud, a.T_map_sensor);
@@ -177,7 +182,7 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
   };
   sweepKeyframes([&](KeyframeMap& k) { k.move({{0, Eigen::Isometry3d::Identity()}}); });
   sweepKeyframes([&](KeyframeMap& k) { k.remove(0); });
-  sweepKeyframes([&](KeyframeMap& k) { k.insert(a.cloud, a.T_map_sensor); });
+  sweepKeyframes([&](KeyframeMap& k) { k.insert(a.cloud, a.T_map_sensor, {}, 0.7); });
   EXPECT_GT(broken, 0);
   EXPECT_LT(broken, failures);
 }

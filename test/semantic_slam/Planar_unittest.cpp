@@ -142,6 +142,15 @@ TEST(Planar, whatTwoPlacesFitIsTold) {
   EXPECT_TRUE(contains(report.warnings()[3], "31 m of the way had no hold along corridors"));
 }
 
+TEST(Planar, scansThatStandWhileOdometryMovesAreTold) {
+  SlamReport report;
+  report.hasOdometry = true;
+  report.way = 19;
+  report.wayError = 12;
+  ASSERT_EQ(report.warnings().size(), 1u);
+  EXPECT_TRUE(contains(report.warnings()[0], "odometry says 1200 % more way"));
+}
+
 TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {
   Submap submap(1, false, true);
   submap.add(wall(0.3f), Eigen::Isometry3d::Identity());
@@ -314,6 +323,13 @@ TEST(Planar, odometryThatStandsStillWhileTheRobotDrivesIsNoticed) {
     r.odometry[i] = i < 55 ? T_stopped : T_on * r.odometry[i];
   EXPECT_NE(warningsOf(r).find("odometry stood still while the robot drove 1"), std::string::npos)
       << warningsOf(r);
+}
+
+TEST(Planar, aScannerThatIsMountedBackwardIsNamed) {
+  Recording r = recordingOf("village", 1, laserOf(), kDriven, kFlat);
+  for (LabeledCloud& cloud : r.clouds)
+    for (Eigen::Vector3f& p : cloud.points) p.head<2>() *= -1;
+  EXPECT_NE(warningsOf(r).find("scans move backward"), std::string::npos) << warningsOf(r);
 }
 
 TEST(Planar, aRobotThatIsTurnedWhereItStandsIsNotLost) {

@@ -200,6 +200,9 @@ TEST(PlaneSearch, givesUpAfterSoManyLooks) {
   const auto all = within(PlaneSearch::kMostLooks);
   ASSERT_TRUE(all && all->isAlone);
   EXPECT_FALSE(within(10'000));
+  std::size_t left = 10'000;
+  EXPECT_FALSE(search.find(scan, {0, 0, 0}, {10, M_PI}, 0.65, left));
+  EXPECT_LT(left, 1'000u) << "for other searches";
   bool isFound = false;
   for (std::size_t looks = 10'000; looks < PlaneSearch::kMostLooks; looks *= 2) {
     const auto found = within(looks);

@@ -8,15 +8,23 @@ namespace {
 
 /** Until one fails; below 0: none does. */
 std::atomic<long> allocationsLeft{-1};
+std::atomic<bool> hasFailed{false};
 
 bool fails() {
   if (allocationsLeft.load(std::memory_order_relaxed) < 0) return false;
-  return allocationsLeft.fetch_sub(1) == 0;
+  const bool fails = allocationsLeft.fetch_sub(1) == 0;
+  if (fails) hasFailed = true;
+  return fails;
 }
 
 }  // namespace
 
-void failAllocation(long n) { allocationsLeft = n; }
+void failAllocation(long n) {
+  allocationsLeft = n;
+  if (n >= 0) hasFailed = false;
+}
+
+bool hasAllocationFailed() { return hasFailed; }
 
 // Not inline: or the compiler pairs malloc() here with delete there, and warns.
 #define NOT_INLINE __attribute__((noinline))
