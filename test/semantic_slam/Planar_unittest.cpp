@@ -156,12 +156,11 @@ TEST(Planar, aScannerThatStandsWithoutOdometryDoesNotMoveBackward) {
   std::mt19937 random(1);
   std::normal_distribution<float> noise(0, 0.03f);
   Slam slam({});
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < 3000; ++i) {
     LabeledCloud cloud = street.seenAt(Eigen::Isometry3d::Identity());
     for (Eigen::Vector3f& p : cloud.points) p *= 1 + noise(random) / p.norm();
-    slam.add(cloud, Eigen::Isometry3d::Identity());
+    slam.add(cloud, Eigen::Isometry3d::Identity(), std::nullopt);
   }
-  std::cout << slam.report().way << " " << slam.report().wayError << std::endl;
   EXPECT_EQ(warningsOf(slam), "");
 }
 
