@@ -137,7 +137,7 @@ mrpt::obs::CObservation2DRangeScan laserScanOf(const point_fields::RawLaserScan&
   for (std::size_t i = 0; i < beams.ranges.size(); ++i) {
     const float range = beams.ranges[i];
     const bool isValid = range >= beams.leastRange && range <= beams.mostRange;
-    scan.setScanRange(i, range >= beams.leastRange ? std::min(range, beams.mostRange) : 0);
+    scan.setScanRange(i, isValid ? range : range == INFINITY ? beams.mostRange : 0);
     scan.setScanRangeValidity(i, isValid && std::isfinite(range));
   }
   return scan;

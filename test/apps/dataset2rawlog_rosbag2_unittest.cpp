@@ -1,5 +1,7 @@
 // Bags of ROS 2, written by the tests, become rawlogs.
 #include <gtest/gtest.h>
+#include <labeled_cloud/Rawlogs.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <sys/stat.h>
 
 #include <array>
@@ -271,6 +273,15 @@ TEST_F(Rosbag2, laserScansAreSeenFromTheirBeams) {
   ASSERT_EQ(points(1).size(), 2u);
   EXPECT_LT((points(1)[0] - Vector3d(2.5, 4, 1)).norm(), 1e-4);
   EXPECT_LT((points(1)[1] - Vector3d(2.5, -5, 1)).norm(), 1e-4);
+  std::vector<float> ranges;
+  labeled_cloud::RawlogReader reader(folder / "out.rawlog");
+  while (const auto entry = reader.next())
+    for (const auto& observation : entry->observations)
+      if (const auto* laser =
+              dynamic_cast<const mrpt::obs::CObservation2DRangeScan*>(observation.get()))
+        for (std::size_t i = 0; i < laser->getScanSize(); ++i)
+          ranges.push_back(laser->getScanRange(i));
+  EXPECT_EQ(ranges, (std::vector<float>{2, 20, 3, 0, 4, 0, 5, 0})) << "infinite alone: nothing";
 }
 
 TEST_F(Rosbag2, laserScansWhoseBeamsTakeTimeHaveTheirTimes) {

@@ -1,5 +1,7 @@
 // Labels from images and networks, through the whole application.
 #include <labeled_cloud/Rawlogs.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <mrpt_compat/Images.h>
 #include <semantic_types/ClassTable.h>
@@ -280,15 +282,29 @@ TEST_F(Rawlog2SemanticMap, aRawlogThatCannotBeMappedIsRefused) {
 TEST_F(Rawlog2SemanticMap, aHostileRawlogIsRefusedInLittleMemory) {
   for (const char* name :
        {"actions_of_poses", "actions_of_too_many", "clouds_in_clouds", "frame_in_a_frame",
-        "frame_of_nothing", "frame_of_poses", "frame_of_too_many", "movement_of_too_many_particles",
-        "movement_without_estimate", "old_frame_of_nothing", "text_of_too_many_letters",
-        "velodyne_calibration_beyond_memory"}) {
+        "frame_of_nothing", "frame_of_poses", "frame_of_too_many", "frame_with_a_longer_name",
+        "movement_of_too_many_particles", "movement_without_estimate", "old_frame_in_a_frame",
+        "old_frame_of_nothing", "text_of_too_many_letters", "velodyne_calibration_beyond_memory"}) {
     const std::string rawlog = std::string(name) + ".rawlog";
     fs::copy_file(fs::path(MSO_SOURCE_DIR) / "test/fuzz/corpus/rawlog" / name, folder / rawlog);
     const ProgramRun refused = run(rawlog);
     ::expectRefusal(refused, {"rawlog2semantic-map: ", rawlog, "object "});
     EXPECT_LT(refused.peakKilobytes, 300'000) << name;
   }
+}
+
+TEST_F(Rawlog2SemanticMap, manyActionsWhoseParticlesAreDrawnAnewAreRead) {
+  mrpt::obs::CActionRobotMovement2D action;
+  auto model = action.motionModelConfiguration;
+  model.modelSelection = action.mmThrun, model.thrunModel.nParticlesCount = 20'000;
+  action.computeFromOdometry({1, 0, 0}, model);
+  mrpt::obs::CActionCollection actions;
+  actions.insert(action);
+  labeled_cloud::RawlogWriter rawlog(folder / "many.rawlog");
+  rawlog.write(robotPose(10, 1.1)), rawlog.write(smallScan(10));
+  for (int i = 0; i < 200; ++i) rawlog.write(actions);
+  rawlog.finish();
+  succeeded(run("many.rawlog"));
 }
 
 TEST_F(Rawlog2SemanticMap, aRawlogIsNotCountedTwice) {

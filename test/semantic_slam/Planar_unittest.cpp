@@ -151,6 +151,19 @@ TEST(Planar, scansThatStandWhileOdometryMovesAreTold) {
   EXPECT_TRUE(contains(report.warnings()[0], "odometry says 1200 % more way"));
 }
 
+TEST(Planar, aScannerThatStandsWithoutOdometryDoesNotMoveBackward) {
+  Block street;
+  std::mt19937 random(1);
+  std::normal_distribution<float> noise(0, 0.03f);
+  Slam slam({});
+  for (int i = 0; i < 3000; ++i) {
+    LabeledCloud cloud = street.seenAt(Eigen::Isometry3d::Identity());
+    for (Eigen::Vector3f& p : cloud.points) p *= 1 + noise(random) / p.norm();
+    slam.add(cloud, Eigen::Isometry3d::Identity(), std::nullopt);
+  }
+  EXPECT_EQ(warningsOf(slam), "");
+}
+
 TEST(Planar, aWallIsThinAcrossItselfAndHasNoHeight) {
   Submap submap(1, false, true);
   submap.add(wall(0.3f), Eigen::Isometry3d::Identity());

@@ -314,7 +314,7 @@ LabeledCloud cloudOf(const RawLaserScan& raw, std::vector<float>& times, bool wi
   LabeledCloud cloud;
   times.clear();
   for (std::size_t i = 0; i < raw.ranges.size(); ++i) {
-    const bool isEmpty = withEmpty && raw.ranges[i] == INFINITY;
+    const bool isEmpty = withEmpty && raw.ranges[i] == INFINITY && std::isfinite(raw.mostRange);
     const float range = isEmpty ? 2 * raw.mostRange : raw.ranges[i], step = static_cast<float>(i);
     const float angle = raw.firstAngle + step * raw.angleStep;
     const bool isMet = range >= raw.leastRange && range <= raw.mostRange && std::isfinite(range);

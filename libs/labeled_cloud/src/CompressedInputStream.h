@@ -85,6 +85,7 @@ class MemoryOfObjects {
  public:
   explicit MemoryOfObjects(const std::filesystem::path& file) : m_file(file) {}
   /** \param delivered bytes of the file so far, unpacked */
+  void beginObject(std::uint64_t delivered) { m_small = 0, m_begin = delivered; }
   bool allows(std::size_t piece, std::uint64_t delivered);
 
  private:
@@ -92,7 +93,8 @@ class MemoryOfObjects {
 
   std::filesystem::path m_file;
   std::unique_ptr<CompressedInputStream> m_ahead;  ///< looks how much there is
-  std::uint64_t m_small = 0;                       ///< in all pieces that are not large
+  std::uint64_t m_small = 0;  ///< in all of the object's pieces that are not large
+  std::uint64_t m_begin = 0;  ///< where the object begins
 };
 
 /** Reads a file compressed with gzip or, as later releases of MRPT write them, with Zstandard; a
@@ -140,8 +142,11 @@ class CompressedInputStream : public mrpt::io::CStream {
   }
   /** Bytes delivered so far. */
   std::uint64_t delivered() const { return m_delivered; }
-  /** For objects that are read from here. */
-  strict_files::AllocationLimit::Allows& allows() { return m_allows; }
+  /** For the object that is read next. */
+  strict_files::AllocationLimit::Allows& allows() {
+    m_memory.beginObject(m_delivered);
+    return m_allows;
+  }
   /** What is wrong with the compressed data met so far, empty if nothing is. */
   const std::string& damage() const { return m_zstd ? m_zstd->damage() : m_damage; }
 

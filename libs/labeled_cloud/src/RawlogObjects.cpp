@@ -29,7 +29,7 @@ bool MemoryOfObjects::allows(std::size_t piece, std::uint64_t delivered) {
                         kPerByteOfSmall = 64;
   if (piece > kLarge) return unpacksTo(piece / kPerByte);
   m_small += piece;
-  return m_small <= kSmallOnes + kPerByteOfSmall * delivered;
+  return m_small <= kSmallOnes + kPerByteOfSmall * (delivered - m_begin);
 }
 
 bool MemoryOfObjects::unpacksTo(std::uint64_t size) try {
@@ -67,14 +67,13 @@ void RawlogObjects::expect(bool holds, const std::string& problem) {
 }
 
 CSerializable::Ptr RawlogObjects::next() {
-  const char here = 0;
-  m_stack = &here;
+  m_stack = static_cast<const char*>(__builtin_frame_address(0));
   char length = 0;
   if (take(&length, 1) == 0) return nullptr;
-  expect((length & kHasEnd) != 0, "it is no rawlog");
+  expect((length & kHasEnd) != 0, "it is no rawlog, or of before MRPT 0.5.5");
   std::string name(length & 0x7f, '\0');
   expect(take(name.data(), name.size()) == name.size(), "the file is cut off");
-  const TRuntimeClassId* id = mrpt::rtti::findRegisteredClass(name);
+  const TRuntimeClassId* id = mrpt::rtti::findRegisteredClass(name.c_str());
   if (id && id == CLASS_ID(CSensoryFrame)) return frame();
   if (id && id == CLASS_ID(CActionCollection)) return actions();
   m_begin = length + name;
@@ -130,7 +129,7 @@ std::size_t RawlogObjects::take(char* buffer, std::size_t size) {
 /** Whether an object of this class may come now. MRPT follows what a movement's estimate is, unless
  * the number in front of it says that it is odometry. */
 bool RawlogObjects::mayCome(const std::string& className) {
-  const TRuntimeClassId* id = mrpt::rtti::findRegisteredClass(className);
+  const TRuntimeClassId* id = mrpt::rtti::findRegisteredClass(className.c_str());  // as MRPT does
   const bool isOdometry = m_past == std::string(4, '\0');
   if (m_isMovement && !isOdometry && !isA(id, CLASS_ID(mrpt::poses::CPosePDF))) return false;
   m_isMovement = id && id == CLASS_ID(mrpt::obs::CActionRobotMovement2D);
@@ -140,14 +139,16 @@ bool RawlogObjects::mayCome(const std::string& className) {
 /** No bytes if there are none, or if they must not be read. */
 std::size_t RawlogObjects::read(void* buffer, std::size_t size) {
   constexpr std::ptrdiff_t kDeepest = 1 << 18;  // bytes of the stack
-  const char here = 0;
-  const bool isDeep = m_stack - &here > kDeepest;
+  const bool isDeep = m_stack - static_cast<const char*>(__builtin_frame_address(0)) > kDeepest;
   if (isDeep) m_problem = "objects in objects in objects";
   if (!m_problem.empty()) return 0;
   const std::size_t done = take(static_cast<char*>(buffer), size);
   if (done < size) m_problem = "the file is cut off";
   const std::string bytes(static_cast<const char*>(buffer), std::min<std::size_t>(done, 0x7f));
-  if (m_last == std::string(1, static_cast<char>(kHasEnd | size)) && !mayCome(bytes)) {
+  const bool isName =
+      m_last == std::string(1, static_cast<char>(kHasEnd | size)) ||
+      (m_past == std::string(1, static_cast<char>(size)) && m_last == std::string(3, '\0'));  // old
+  if (isName && !mayCome(bytes)) {
     m_problem = "a " + strict_files::printable(bytes) + " does not belong there";
     return 0;
   }

@@ -108,7 +108,8 @@ void ScanConverterOptions::describe(strict_files::OptionList& list) {
            "sides than this share of their depth (0.02); 0: keeps all");
   list.add("empty_carves", emptyCarves, "",
            "a pixel or beam without a return says that nothing is within the range that the "
-           "observation states, beyond which returns only carve; not for sensors that lose returns");
+           "observation states (depth images of ROS: 65 m, so set max_range), beyond which "
+           "returns only carve; not for sensors that lose returns");
   labels.describe(list);
 }
 

@@ -175,9 +175,10 @@ void MoverTracker::update(double seconds) {
     m_tracks[t].seenAt = seconds;
     correct(m_tracks[t], seen[i]);
   }
-  m_tracks.erase(std::remove_if(m_tracks.begin(), m_tracks.end(),
-                                [&](const Track& t) { return std::abs(seconds - t.seenAt) > kForget; }),
-                 m_tracks.end());
+  m_tracks.erase(
+      std::remove_if(m_tracks.begin(), m_tracks.end(),
+                     [&](const Track& t) { return std::abs(seconds - t.seenAt) > kForget; }),
+      m_tracks.end());
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (!taken[i])
       m_tracks.push_back({seen[i],

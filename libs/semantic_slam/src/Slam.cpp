@@ -97,7 +97,7 @@ std::vector<std::string> SlamReport::warnings() const {
     warnings.push_back("odometry stood still while the robot drove " + tenths(standing) +
                        " m by its scans: the map may be wrong there");
   const double wayOfOdometry = way * std::abs(1 + wayError);
-  if (wayError < -1 && way > kLeastWay)
+  if (hasOdometry && wayError < -1 && way > kLeastWay)
     warnings.push_back(
         "scans move backward where odometry goes ahead: the sensor's pose on the robot is wrong");
   else if (hasOdometry && std::max(way, wayOfOdometry) > kLeastWay &&
