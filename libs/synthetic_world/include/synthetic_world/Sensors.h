@@ -96,8 +96,8 @@ struct LidarOptions {
   /** Share (0..1) of the beams on windows, cars, water and signs that return by way of what these
    * mirror. Such ghosts lie behind the surface, many of them below the ground. */
   double ghosts = 0;
-  bool keepEmpty = false;  ///< beams that meet nothing have a point without a class at maxRange
   SensorNoise noise;
+  bool keepEmpty = false;  ///< beams that meet nothing have a point without a class at maxRange
 
   /** Unit vector of a beam, sensor frame; ring 0 is the highest, column 0 looks ahead. */
   Eigen::Vector3d beam(int ring, int column) const;
