@@ -4,6 +4,7 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <zstd.h>
@@ -17,6 +18,7 @@
 using labeled_cloud::CObservationLabeledCloud;
 using labeled_cloud::RawlogReader;
 using mrpt::io::CFileOutputStream;
+using mrpt::maps::CPointsMap;
 using mrpt::serialization::CSerializable;
 
 namespace {
@@ -126,6 +128,58 @@ TEST(RawlogReader, readsActionsAndSensoryFrames) {
   EXPECT_TRUE(reader.next()->actions);
   EXPECT_EQ(reader.next()->observations.size(), 2u);
   EXPECT_FALSE(reader.next());
+}
+
+/** Frames before version 2 have a number, those of version 0 a time as well. */
+TEST(RawlogReader, readsSensoryFramesOfOldVersions) {
+  const TemporaryFolder folder;
+  for (const std::uint8_t version : {0, 1, 2}) {
+    CFileOutputStream stream((folder / "old.rawlog").string());
+    auto archive = mrpt::serialization::archiveFrom(stream);
+    const std::string name = "CSensoryFrame";
+    archive << static_cast<std::uint8_t>(0x80 | name.size());
+    archive.WriteBuffer(name.data(), name.size());
+    archive << version;
+    if (version < 2) archive << std::uint32_t{7};
+    if (version == 0) archive << mrpt::Clock::fromDouble(9);
+    archive << std::uint32_t{1} << *cloudAt(4, 1) << std::uint8_t{0x88};
+    stream.close();
+    RawlogReader reader(folder / "old.rawlog");
+    const auto entry = reader.next();
+    ASSERT_EQ(entry->observations.size(), 1u);
+    EXPECT_NEAR(mrpt::Clock::toDouble(entry->observations[0]->timestamp), version == 0 ? 9 : 4,
+                1e-6);
+  }
+}
+
+TEST(RawlogReader, readsEachKindOfObservationActionAndPointsThatMrptHas) {
+  const TemporaryFolder folder;
+  std::vector<CSerializable::Ptr> objects;
+  const auto add = [&](const CSerializable::Ptr& object) {
+    if (object) objects.push_back(object);
+  };
+  for (const auto* kind : mrpt::rtti::getAllRegisteredClassesChildrenOf(CLASS_ID(CPointsMap))) {
+    auto cloud = mrpt::obs::CObservationPointCloud::Create();
+    cloud->pointcloud = mrpt::ptr_cast<CPointsMap>::from(kind->createObject());
+    if (cloud->pointcloud) add(cloud);
+  }
+  for (const auto* kind :
+       mrpt::rtti::getAllRegisteredClassesChildrenOf(CLASS_ID(mrpt::obs::CObservation)))
+    add(mrpt::ptr_cast<CSerializable>::from(kind->createObject()));
+  ASSERT_GT(objects.size(), 20u);
+  auto actions = mrpt::obs::CActionCollection::Create();
+  mrpt::obs::CActionRobotMovement2D::TMotionModelOptions options;
+  for (const auto model : {mrpt::obs::CActionRobotMovement2D::mmGaussian,
+                           mrpt::obs::CActionRobotMovement2D::mmThrun}) {
+    options.modelSelection = model;
+    mrpt::obs::CActionRobotMovement2D movement;
+    movement.computeFromOdometry({1, 0, 0}, options);
+    actions->insert(movement);
+  }
+  add(actions);
+  for (const auto& object : objects)
+    EXPECT_EQ(countEntries(writeRawlog(folder / "one.rawlog", {object})), 1)
+        << object->GetRuntimeClass()->className;
 }
 
 TEST(RawlogReader, readsTheRawlogsThatMrptShips) {

@@ -25,7 +25,7 @@ int failEachAllocation(const Prepare& prepare, const Operation& operation,
       failed = true;
     }
     failAllocation(-1);
-    if (failed) ++failures, afterFailure();  // std::stable_sort() does without
+    if (failed) ++failures, afterFailure();  // sorting does without
     if (!hasAllocationFailed() || testing::Test::HasFailure()) {
       EXPECT_FALSE(failed) << "when allocation " << n << " had failed";
       return failures;

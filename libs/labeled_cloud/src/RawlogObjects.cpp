@@ -1,9 +1,7 @@
 #include "RawlogObjects.h"
 
-#include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation.h>
-#include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDF.h>
 
 #include <strict_files/Words.h>
@@ -11,8 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 namespace labeled_cloud {
@@ -56,7 +54,8 @@ bool isValue(const TRuntimeClassId* id) {
   const std::string name = id->className;
   for (const char* space : {"mrpt::poses::", "mrpt::math::", "mrpt::img::"})
     if (name.rfind(space, 0) == 0) return true;
-  return isA(id, mrpt::rtti::findRegisteredClass("mrpt::maps::CPointsMap"));
+  return name == "mrpt::maps::TMapGenericParams" ||  // of a map of points
+         isA(id, mrpt::rtti::findRegisteredClass("mrpt::maps::CPointsMap"));
 }
 
 }  // namespace
@@ -76,30 +75,50 @@ CSerializable::Ptr RawlogObjects::next() {
   std::string name(length & 0x7f, '\0');
   expect(take(name.data(), name.size()) == name.size(), "the file is cut off");
   const TRuntimeClassId* id = mrpt::rtti::findRegisteredClass(name);
-  if (id && id == CLASS_ID(CSensoryFrame)) return listOf<CSensoryFrame, CObservation>(2);
-  if (id && id == CLASS_ID(CActionCollection)) return listOf<CActionCollection, CAction>(0);
+  if (id && id == CLASS_ID(CSensoryFrame)) return frame();
+  if (id && id == CLASS_ID(CActionCollection)) return actions();
   m_begin = length + name;
   CSerializable::Ptr object = ReadObject();
   expect(object != nullptr, "an empty object");
   return object;
 }
 
-/** As MRPT writes them: version, number, the objects, a mark. */
-template <class List, class Content>
-std::shared_ptr<List> RawlogObjects::listOf(int version) {
-  auto list = std::make_shared<List>();
-  const std::string kind = list->GetRuntimeClass()->className;
-  expect(ReadAs<std::int8_t>() == version, "a " + kind + " of another version than this MRPT's");
-  for (auto n = ReadAs<std::uint32_t>(); n > 0; --n) {
-    const auto object = ReadObject<Content>();
-    expect(object != nullptr, "what is in a " + kind + " is nothing, or does not belong there");
-    if constexpr (std::is_same_v<Content, CAction>)
-      list->insert(*object);
-    else
-      list->insert(object);
+/** As MRPT writes one: version, what old versions have, number, observations, a mark. */
+CSensoryFrame::Ptr RawlogObjects::frame() {
+  const int version = versionUpTo(2);
+  if (version < 2) ReadAs<std::uint32_t>();  // its number
+  std::optional<std::int64_t> stamp;
+  if (version == 0) stamp = ReadAs<std::int64_t>();  // 100 ns since 1601
+  auto frame = std::make_shared<CSensoryFrame>();
+  for (const auto& observation : objects<CObservation>()) {
+    if (stamp) observation->timestamp = mrpt::Clock::time_point(mrpt::Clock::duration(*stamp));
+    frame->insert(observation);
   }
-  expect(static_cast<char>(ReadAs<std::int8_t>()) == kEnd, "the end of a " + kind + " is missing");
-  return list;
+  return frame;
+}
+
+CActionCollection::Ptr RawlogObjects::actions() {
+  versionUpTo(0);
+  auto actions = std::make_shared<CActionCollection>();
+  for (const auto& action : objects<CAction>()) actions->insert(*action);
+  return actions;
+}
+
+int RawlogObjects::versionUpTo(int newest) {
+  const int version = ReadAs<std::uint8_t>();
+  expect(version <= newest, "a list of a version that is not known: " + std::to_string(version));
+  return version;
+}
+
+template <class Object>
+std::vector<std::shared_ptr<Object>> RawlogObjects::objects() {
+  std::vector<std::shared_ptr<Object>> objects;
+  for (auto n = ReadAs<std::uint32_t>(); n > 0; --n) {
+    objects.push_back(ReadObject<Object>());
+    expect(objects.back() != nullptr, "what is in a list is nothing, or does not belong there");
+  }
+  expect(static_cast<char>(ReadAs<std::int8_t>()) == kEnd, "the end of a list is missing");
+  return objects;
 }
 
 std::size_t RawlogObjects::take(char* buffer, std::size_t size) {

@@ -1,7 +1,11 @@
 #pragma once
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "CompressedInputStream.h"
 
@@ -23,8 +27,11 @@ class RawlogObjects : public mrpt::serialization::CArchive {
   std::size_t write(const void* buffer, std::size_t size) override;
 
   std::size_t take(char* buffer, std::size_t size);
-  template <class List, class Content>
-  std::shared_ptr<List> listOf(int version);
+  mrpt::obs::CSensoryFrame::Ptr frame();
+  mrpt::obs::CActionCollection::Ptr actions();
+  int versionUpTo(int newest);
+  template <class Object>
+  std::vector<std::shared_ptr<Object>> objects();
   void expect(bool holds, const std::string& problem);
   bool mayCome(const std::string& className);
 

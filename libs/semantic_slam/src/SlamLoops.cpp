@@ -225,16 +225,20 @@ bool SlamEngine::closeLeftLoops() {
     m_lastLook = m_keyframes[k].way;
     const auto ways = waysFrom(k);
     const auto windowOf = [&](std::size_t place) {
-      return PlaneSearch::Window{std::clamp(windowAfter(ways[place]).radius, least, most), kAngle};
+      return std::clamp(windowAfter(ways[place]).radius, least, most);
     };
     for (const std::size_t place :
-         placesOf(k, [&](std::size_t at) { return 1.4 * windowOf(at).radius; })) {
+         placesOf(k, [&](std::size_t at) { return 1.4 * windowOf(at); })) {
       if (isClosed(place, k)) continue;
       const Seen stretch = pointsOf(k - std::min(k, keyframesBeside() / 2),
                                     std::min(k + keyframesBeside() / 2, m_keyframes.size() - 1), k);
       std::size_t budget = kLiveLooks / kMostPlaces;
-      const auto look = lookAround(place, k, stretch, windowOf(place), budget);
-      const auto edge = look && look->isAlone ? edgeOf(*look, stretch, k) : std::nullopt;
+      const auto edgeWithin = [&](double radius) {
+        const auto look = lookAround(place, k, stretch, {radius, kAngle}, budget);
+        return look && look->isAlone ? edgeOf(*look, stretch, k) : std::nullopt;
+      };
+      auto edge = edgeWithin(least);
+      if (!edge && windowOf(place) > least) edge = edgeWithin(windowOf(place));
       if (!edge) continue;
       looks.push_back(*edge);
       const std::size_t before = m_edges.size();
