@@ -81,10 +81,12 @@ class RandomWork {
     m_map.move(poses);
   }
   void remove() {
-    const KeyframeId id = any();
-    m_map.remove(id);
-    scans.removeOf(id);
-    m_present.erase(std::find(m_present.begin(), m_present.end(), id));
+    const std::set<KeyframeId> some{any(), any()};
+    m_map.remove(some);
+    for (const KeyframeId id : some) {
+      scans.removeOf(id);
+      m_present.erase(std::find(m_present.begin(), m_present.end(), id));
+    }
   }
   KeyframeId any() { return m_present[m_random() % m_present.size()]; }
 

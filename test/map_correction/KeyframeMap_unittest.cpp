@@ -49,7 +49,7 @@ TEST(KeyframeMap, makesAnewOnlyTilesInWhichAScanSeesSomethingElse) {
   EXPECT_EQ(one.scansMerged, 1u) << "the others are too far away to share a tile";
   EXPECT_GT(one.tiles, 10u);
   const SemanticOcTree before = map;
-  keyframes.remove(0);
+  keyframes.remove({0});
   EXPECT_LT(map.size(), before.size());
 }
 
@@ -93,7 +93,7 @@ TEST(KeyframeMap, tellsOfABlockThatIsNotWorthItsPriceAnyMore) {
   LeafFollower follower(map);
   follower.skipLeaves();
   const std::size_t before = Abstraction(map).leaves().size();
-  keyframes.remove(1);
+  keyframes.remove({1});
   EXPECT_LT(Abstraction(map).leaves().size(), before);
   EXPECT_FALSE(follower.leaves().removed.empty());
 }
@@ -108,17 +108,17 @@ TEST(KeyframeMap, refusesWhatIsNotThereAndStaysAsItWas) {
   keyframes.insert(scan.cloud, scan.T_map_sensor);
   const SemanticOcTree before = map;
   const Eigen::Isometry3d outside(Eigen::Translation3d(1e6, 0, 0));
-  EXPECT_TRUE(contains(errorOf([&] { keyframes.remove(1); }), "no keyframe 1"));
+  EXPECT_TRUE(contains(errorOf([&] { keyframes.remove({1}); }), "no keyframe 1"));
   EXPECT_TRUE(contains(errorOf([&] { keyframes.move({{2, outside}}); }), "no keyframe 2"));
   EXPECT_THROW(keyframes.move({{0, outside}}), std::out_of_range);
   EXPECT_THROW(keyframes.insert(scan.cloud, outside), std::out_of_range);
   EXPECT_EQ(keyframes.numScans(), 1u);
   EXPECT_TRUE(keyframes.pose(0).isApprox(Eigen::Isometry3d::Identity()));
   EXPECT_TRUE(map == before);
-  keyframes.remove(0);
+  keyframes.remove({0});
   EXPECT_TRUE(map.empty());
   EXPECT_THROW(keyframes.insert(scan.cloud, scan.T_map_sensor), std::logic_error);
-  EXPECT_THROW(keyframes.remove(0), std::out_of_range);
+  EXPECT_THROW(keyframes.remove({0}), std::out_of_range);
   SemanticOcTree full = before;
   EXPECT_THROW(KeyframeMap other(full), std::invalid_argument);
 }

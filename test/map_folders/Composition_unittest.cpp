@@ -59,7 +59,7 @@ void insertAndCorrect(SemanticOcTree& map, const Making& making,
   keyframes.move(poses);
   look();
   keyframes.move({{1, keyframes.pose(1) * Eigen::Translation3d(9, 2, 0)}});
-  keyframes.remove(2);
+  keyframes.remove({2});
 }
 
 void make(SemanticOcTree& map, const Making& making, const std::function<void()>& look) {

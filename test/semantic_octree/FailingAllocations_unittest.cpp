@@ -181,7 +181,7 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
         });
   };
   sweepKeyframes([&](KeyframeMap& k) { k.move({{0, Eigen::Isometry3d::Identity()}}); });
-  sweepKeyframes([&](KeyframeMap& k) { k.remove(0); });
+  sweepKeyframes([&](KeyframeMap& k) { k.remove({0}); });
   sweepKeyframes([&](KeyframeMap& k) { k.insert(a.cloud, a.T_map_sensor, {}, 0.7); });
   EXPECT_GT(broken, 0);
   EXPECT_LT(broken, failures);

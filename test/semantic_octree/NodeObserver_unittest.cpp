@@ -97,7 +97,7 @@ TEST(NodeObserver, isAskedWhereAMapChangesOrIsCorrected) {
     }
     keyframes.move({{2, keyframes.pose(2) * Eigen::Translation3d(1.3, 0, 0)}});
     expectUpToDate(map);
-    keyframes.remove(3);
+    keyframes.remove({3});
     expectUpToDate(map);
   }
 }

@@ -317,6 +317,38 @@ TEST(Mapper, isFoundAgainWhereAPersonSaysThatItIs) {
   EXPECT_THROW(Mapper(other, {}).relocalize(T), std::logic_error);
 }
 
+TEST(Mapper, whoDrivesInCirclesKeepsTheFirstAndTheLastLooksWhoseMapItHasToTheLastBit) {
+  const Way circles(139, planar(0.4, 0, 0.5), 0.03, 1, planar(0, -0.8, 0));
+  SemanticOcTree map(0.2, wallsAndCars()), anew(0.2, wallsAndCars());
+  MapperOptions options = localizing();
+  options.forgetsFrom = 64;
+  Mapper mapper(map, options);
+  std::vector<LabeledCloud> kept;
+  double off = 0;
+  for (std::size_t i = 0; i < circles.truth.size(); ++i) {
+    const std::vector<SensorScan> seen{{yardFrom(circles.truth[i])}};
+    const auto place = mapper.locate(seen, circles.odometry[i]);
+    kept.push_back(seen[0].cloud);
+    const auto before = mapper.slam()->poses();
+    mapper.insert(seen, place, 0);
+    const auto& poses = mapper.slam()->poses();
+    std::vector<LabeledCloud> left;
+    for (std::size_t k = 0; k < before.size() && left.size() < poses.size(); ++k)
+      if (before[k].matrix() == poses[left.size()].matrix()) left.push_back(kept[k]);
+    ASSERT_EQ(left.size(), poses.size()) << "poses stay";
+    kept = left;
+    off = std::max(off, circles.errorOf(mapper.T_map_odometry(), i));
+  }
+  EXPECT_LT(kept.size(), 110u);
+  EXPECT_LT(off, 0.05);
+  mapper.finish();
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    anew.insert(kept[k], mapper.slam()->poses()[k], options.insertion);
+  anew.setCalibration(map.filterParameters().calibration);
+  EXPECT_TRUE(map == anew);
+  for (const auto& edge : mapper.slam()->edges()) EXPECT_LT(std::max(edge.a, edge.b), kept.size());
+}
+
 TEST(Mapper, whatTheRobotStandsOnCarvesNothing) {
   for (const bool localize : {false, true}) {
     YardSeen yard(localize);

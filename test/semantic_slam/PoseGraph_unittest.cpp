@@ -150,6 +150,17 @@ TEST(PoseGraph, edgesFromTheMapSayWhereTheFirstPoseIs) {
   EXPECT_LT(largestError(poses, truth), 1e-4);
 }
 
+TEST(PoseGraph, twoStepsInARowErrByBothErrors) {
+  std::mt19937 random(3);
+  const auto T = poseOf(randomVector(random, 2, 1));
+  const Matrix6 first = informationOf(0.1, 0.02), second = informationOf(0.03, 0.05);
+  Matrix6 turn;  // what a small error before the second step is after it
+  for (int i = 0; i < 6; ++i)
+    turn.col(i) = vectorOf(T.inverse() * poseOf(1e-6 * Vector6::Unit(i)) * T) / 1e-6;
+  const Matrix6 both = turn * first.inverse() * turn.transpose() + second.inverse();
+  EXPECT_TRUE(inSeries(first, {0, 1, T, second}).inverse().isApprox(both, 1e-5));
+}
+
 TEST(PoseGraph, refusesEdgesOfPosesThatAreNotThere) {
   std::vector<Eigen::Isometry3d> poses = ring(3);
   EXPECT_THROW(optimize(poses, {edgeOf(ring(4), 0, 3)}), std::invalid_argument);

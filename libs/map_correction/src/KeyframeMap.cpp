@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -122,18 +123,15 @@ struct KeyframeMap::Content {
     ScanStorage::Piece cloud;
     StoredVoxels voxels;
   };
-  struct Keyframe {
-    Eigen::Isometry3d T_map_keyframe;
-    bool isRemoved = false;
-  };
 
   Content(SemanticOcTree& tree, const std::optional<std::filesystem::path>& folder)
       : map(tree), storage(folder) {
     if (!map.empty()) throw std::invalid_argument("keyframes: their map is not empty at first");
   }
 
-  Keyframe& keyframe(KeyframeId id) {
-    if (id < keyframes.size() && !keyframes[id].isRemoved) return keyframes[id];
+  Eigen::Isometry3d& T_map_keyframe(KeyframeId id) {
+    const auto at = keyframes.find(id);
+    if (at != keyframes.end()) return at->second;
     throw std::out_of_range("keyframes: there is no keyframe " + std::to_string(id));
   }
   void trace(const StoredScan& s, const LabeledCloud& cloud, const Eigen::Isometry3d& T,
@@ -163,7 +161,8 @@ struct KeyframeMap::Content {
 
   SemanticOcTree& map;
   ScanStorage storage;
-  std::vector<Keyframe> keyframes;
+  std::map<KeyframeId, Eigen::Isometry3d> keyframes;  ///< T_map_keyframe of those that are left
+  KeyframeId next = 0;
   std::deque<StoredScan> scans;  ///< in the order of their insertion
   std::unique_ptr<Scan> buffers;
 };
@@ -283,8 +282,8 @@ KeyframeMap::KeyframeMap(SemanticOcTree& map, const std::filesystem::path& folde
 KeyframeMap::~KeyframeMap() = default;
 
 KeyframeId KeyframeMap::begin(const Eigen::Isometry3d& T_map_keyframe) {
-  m->keyframes.push_back({T_map_keyframe});
-  return m->keyframes.size() - 1;
+  m->keyframes.emplace(m->next, T_map_keyframe);
+  return m->next++;
 }
 
 InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
@@ -292,13 +291,12 @@ InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
                                     const InsertionOptions& options, double secondsSince) {
   options.validate();
   const std::int64_t time = MapAccess::timeIn(m->map, secondsSince);
-  if (m->keyframes.empty() || m->keyframes.back().isRemoved)
+  if (m->keyframes.empty() || m->keyframes.rbegin()->first + 1 != m->next)
     throw std::logic_error("keyframes: a scan is inserted before a keyframe has begun");
-  const KeyframeId id = m->keyframes.size() - 1;
-  Content::StoredScan stored{id, T_keyframe_sensor, options, time, {}, {}};
+  Content::StoredScan stored{m->next - 1, T_keyframe_sensor, options, time, {}, {}};
   InsertionReport report;
   m->inBuffers([&](Scan& scan) {
-    m->trace(stored, cloud, m->keyframes[id].T_map_keyframe, scan);
+    m->trace(stored, cloud, m->T_map_keyframe(stored.keyframe), scan);
     stored.cloud = m->storage.keep(packCloud(cloud));
     stored.voxels = m->keep(packed(scan));
     m->scans.push_back(std::move(stored));
@@ -315,47 +313,44 @@ InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
 }
 
 CorrectionReport KeyframeMap::move(const std::vector<KeyframePose>& poses) {
-  std::vector<std::optional<Eigen::Isometry3d>> newPoses(m->keyframes.size());
-  for (const KeyframePose& p : poses) {
-    m->keyframe(p.keyframe);
-    newPoses[p.keyframe] = p.T_map_keyframe;
-  }
+  std::map<KeyframeId, Eigen::Isometry3d> newPoses;
+  for (const KeyframePose& p : poses)
+    if (m->T_map_keyframe(p.keyframe).matrix() != p.T_map_keyframe.matrix())
+      newPoses[p.keyframe] = p.T_map_keyframe;
+    else
+      newPoses.erase(p.keyframe);
   Correction correction(*m);
-  for (std::size_t i = 0; i < m->scans.size(); ++i) {
-    const KeyframeId id = m->scans[i].keyframe;
-    const auto& pose = newPoses[id];
-    if (pose && pose->matrix() != m->keyframes[id].T_map_keyframe.matrix())
-      correction.move(i, *pose);
-  }
+  for (std::size_t i = 0; i < m->scans.size(); ++i)
+    if (const auto at = newPoses.find(m->scans[i].keyframe); at != newPoses.end())
+      correction.move(i, at->second);
   const CorrectionReport report = correction.apply();
-  for (KeyframeId id = 0; id < newPoses.size(); ++id)
-    if (newPoses[id]) m->keyframes[id].T_map_keyframe = *newPoses[id];
+  for (const auto& [id, T_map_keyframe] : newPoses) m->keyframes[id] = T_map_keyframe;
   return report;
 }
 
-CorrectionReport KeyframeMap::remove(KeyframeId keyframe) {
-  m->keyframe(keyframe);
+CorrectionReport KeyframeMap::remove(const std::set<KeyframeId>& keyframes) {
+  for (const KeyframeId id : keyframes) m->T_map_keyframe(id);
   Correction correction(*m);
-  const auto isOfKeyframe = [keyframe](const auto& s) { return s.keyframe == keyframe; };
+  const auto isGone = [&](const auto& s) { return keyframes.count(s.keyframe) > 0; };
   for (std::size_t i = 0; i < m->scans.size(); ++i)
-    if (isOfKeyframe(m->scans[i])) correction.remove(i);
+    if (isGone(m->scans[i])) correction.remove(i);
   const CorrectionReport report = correction.apply();
-  m->keyframes[keyframe].isRemoved = true;
+  for (const KeyframeId id : keyframes) m->keyframes.erase(id);
   for (auto& s : m->scans)
-    if (isOfKeyframe(s)) {
+    if (isGone(s)) {
       m->storage.drop(s.cloud);
       m->storage.drop(s.voxels.packed);
     }
-  m->scans.erase(std::remove_if(m->scans.begin(), m->scans.end(), isOfKeyframe), m->scans.end());
+  m->scans.erase(std::remove_if(m->scans.begin(), m->scans.end(), isGone), m->scans.end());
   return report;
 }
 
-std::size_t KeyframeMap::numKeyframes() const { return m->keyframes.size(); }
+std::size_t KeyframeMap::numKeyframes() const { return m->next; }
 
 std::size_t KeyframeMap::numScans() const { return m->scans.size(); }
 
 const Eigen::Isometry3d& KeyframeMap::pose(KeyframeId keyframe) const {
-  return m->keyframe(keyframe).T_map_keyframe;
+  return m->T_map_keyframe(keyframe);
 }
 
 auto KeyframeMap::bytes() const -> Bytes {
@@ -364,7 +359,7 @@ auto KeyframeMap::bytes() const -> Bytes {
     (m->storage.isInMemory() ? bytes.inMemory : bytes.onDisk) +=
         s.cloud.size + s.voxels.packed.size;
   bytes.inMemory += m->scans.size() * sizeof(Content::StoredScan) +
-                    m->keyframes.size() * sizeof(Content::Keyframe);
+                    m->keyframes.size() * sizeof(*m->keyframes.begin());
   return bytes;
 }
 

@@ -10,8 +10,25 @@ using semantic_octree::InsertionReport;
 using semantic_octree::KeyframeMap;
 using semantic_octree::SemanticOcTree;
 
+namespace {
+
+/** So many beams pass until a voxel that was surely occupied is surely free, and the other way
+ * round it takes less: what was seen before does not matter any more. */
+std::size_t scansThatDecide(const semantic_octree::FilterParameters& p) {
+  const auto logOdds = [](double q) { return std::log(q / (1 - q)); };
+  const double whole = logOdds(p.maxProbability) - logOdds(p.minOccupancy);
+  const double passes = std::log((1 - p.falseAlarmProbability) / (1 - p.hitProbability));
+  const double hits = std::log(p.hitProbability / p.falseAlarmProbability);
+  return static_cast<std::size_t>(std::ceil(whole / std::min(passes, hits)));
+}
+
+}  // namespace
+
 Mapper::Mapper(SemanticOcTree& map, const MapperOptions& options, const SemanticOcTree* reference)
-    : m_map(map), m_options(options), m_calibrator(map.getResolution(), map.numClasses()) {
+    : m_map(map),
+      m_options(options),
+      m_forgetAt(options.forgetsFrom),
+      m_calibrator(map.getResolution(), map.numClasses()) {
   m_options.insertion.validate();
   if (!m_options.localize) return;
   m_slam.emplace(m_options.slam, m_options.scans);
@@ -89,7 +106,8 @@ auto Mapper::insert(const std::vector<SensorScan>& seen, const Place& place, dou
     -> Inserted {
   constexpr double kOff = 0.25;  // voxels: keyframes that are off by more are moved
   Inserted inserted{place, {}};
-  if (m_keyframes && place.added->isNew) m_keyframes->begin(m_slam->poses().back());
+  if (m_keyframes && place.added->isNew)
+    m_ids.push_back(m_keyframes->begin(m_slam->poses().back()));
   if (!isLeftOut(place))
     for (const SensorScan& scan : seen) {
       const SensorScan straight =
@@ -108,6 +126,7 @@ auto Mapper::insert(const std::vector<SensorScan>& seen, const Place& place, dou
       m_calibrateAt *= 2;
     }
   if (m_keyframes && place.added->posesMoved) moveKeyframes(kOff * m_map.getResolution());
+  if (m_slam && m_slam->poses().size() >= m_forgetAt) forget();
   return inserted;
 }
 
@@ -177,14 +196,31 @@ void Mapper::moveKeyframes(double meters) {
   std::vector<semantic_octree::KeyframePose> off;
   for (std::size_t k = 0; k < m_slam->poses().size(); ++k) {
     const Eigen::Isometry3d& T_map_keyframe = m_slam->poses()[k];
-    const Vector6 by = vectorOf(m_keyframes->pose(k).inverse() * T_map_keyframe);
+    const Vector6 by = vectorOf(m_keyframes->pose(m_ids[k]).inverse() * T_map_keyframe);
     if (by.head<3>().norm() + kSeenFrom * by.tail<3>().norm() > meters)
-      off.push_back({k, T_map_keyframe});
+      off.push_back({m_ids[k], T_map_keyframe});
   }
   if (off.empty()) return;
   calibrate();
   m_calibrator.clear();
   m_keyframes->move(off);
+}
+
+/** When there are twice as many as were left: so each scan is merged once more, in the mean. */
+void Mapper::forget() {
+  const auto many = m_slam->outnumbered(scansThatDecide(m_map.filterParameters()));
+  if (m_keyframes) {
+    std::set<semantic_octree::KeyframeId> ids;
+    for (const std::size_t k : many) ids.insert(m_ids[k]);
+    calibrate();
+    m_calibrator.clear();
+    m_keyframes->remove(ids);
+    m_ids.erase(std::remove_if(m_ids.begin(), m_ids.end(),
+                               [&](const auto id) { return ids.count(id) > 0; }),
+                m_ids.end());
+  }
+  m_slam->forget(many);
+  m_forgetAt = std::max(m_options.forgetsFrom, 2 * m_slam->poses().size());
 }
 
 }  // namespace semantic_slam

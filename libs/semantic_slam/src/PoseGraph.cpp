@@ -186,6 +186,12 @@ Eigen::Isometry3d rigid(const Eigen::Isometry3d& T) {
   return result;
 }
 
+Matrix6 inSeries(const Matrix6& step, const PoseEdge& then) {
+  const Matrix6 turn = adjoint(then.T_a_b), turned = turn.transpose() * step * turn;
+  const Matrix6 both = turned * (turned + then.information).inverse() * then.information;
+  return (both + both.transpose()) / 2;
+}
+
 double squaredError(const PoseEdge& edge, const Poses& poses) {
   const Vector6 e = errorOf(edge, poses);
   return e.dot(edge.information * e);

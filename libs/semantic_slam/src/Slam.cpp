@@ -140,6 +140,8 @@ Slam::Added Slam::add(const SensorScan& scan,
 }
 
 bool Slam::finish() { return m->finish(); }
+std::vector<std::size_t> Slam::outnumbered(std::size_t by) const { return m->outnumbered(by); }
+void Slam::forget(const std::vector<std::size_t>& keyframes) { m->forget(keyframes); }
 const std::vector<Eigen::Isometry3d>& Slam::poses() const { return m->poses(); }
 const std::vector<PoseEdge>& Slam::edges() const { return m->edges(); }
 SlamReport Slam::report() const { return m->report(); }

@@ -3,6 +3,8 @@
 #include <strict_files/OutputFiles.h>
 
 #include <functional>
+#include <set>
+#include <utility>
 
 #include "MotionNoise.h"
 #include "PlaneSearch.h"
@@ -23,7 +25,7 @@ Eigen::Vector3d flatOf(const Eigen::Isometry3d& T);
 Eigen::Isometry3d poseOfFlat(const Eigen::Vector3d& flat, double z = 0);
 
 /** What Slam does: tracking (SlamTracking.cpp), loops and the reference
- * (SlamLoops.cpp), pieces (SlamPieces.cpp). */
+ * (SlamLoops.cpp), pieces (SlamPieces.cpp), what goes (SlamForgetting.cpp). */
 class SlamEngine {
  public:
   using Pose = Eigen::Isometry3d;
@@ -35,6 +37,8 @@ class SlamEngine {
   Slam::Added add(const SensorScan& scan, const std::optional<Pose>& T_odometry_robot,
                   double seconds);
   bool finish();
+  std::vector<std::size_t> outnumbered(std::size_t by) const;
+  void forget(const std::vector<std::size_t>& keyframes);
   const std::vector<Pose>& poses() const { return m_poses; }
   const std::vector<PoseEdge>& edges() const { return m_edges; }
   SlamReport report() const;
@@ -112,6 +116,13 @@ class SlamEngine {
   }
   Registration match(const std::vector<Submap>& submaps, const Seen& seen,
                      const Pose& T_submap_guess, const Matrix6& prior) const;
+
+  /** Of ground, as wide as the coarse cubes that scans are registered to: along x and y. */
+  using Column = std::pair<double, double>;
+  std::set<Column> columnsSeenFrom(std::size_t keyframe) const;
+  /** What is left of the graph. \param isGone by keyframe \param now by keyframe: its number */
+  std::vector<PoseEdge> edgesOfOthers(const std::vector<bool>& isGone,
+                                      const std::vector<std::size_t>& now) const;
 
   // --- Pieces: where scans were lost, the robot may have been carried, or a part of the log is
   // missing (SlamPieces.cpp) ---
@@ -247,10 +258,11 @@ class SlamEngine {
   int m_stepScans = 1;                         ///< scans from the registration before to the last
   int m_numSmall = 0;                          ///< small steps since the last registration
   double m_wayOfOdometry = 0, m_wayOfScans = 0, m_turnOfOdometry = 0, m_turnOfScans = 0;
-  double m_lastLook = 0, m_lastReferenced = 0;                ///< m of the way
-  double m_lastWholeLook = 0;                                 ///< when all of a window was searched
-  double m_lostWay = 0;                                       ///< m where scans fit nothing
-  std::size_t m_looks = 0;                                    ///< left for this keyframe
+  double m_lastLook = 0, m_lastReferenced = 0;  ///< m of the way
+  std::size_t m_looked = 0;                     ///< keyframes whose loops may have gone
+  double m_lastWholeLook = 0;                   ///< when all of a window was searched
+  double m_lostWay = 0;                         ///< m where scans fit nothing
+  std::size_t m_looks = 0;                      ///< left for this keyframe
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;  ///< they may be wrong
   bool m_isOptimized = true;
   std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece

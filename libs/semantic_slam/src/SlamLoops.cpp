@@ -220,7 +220,7 @@ bool SlamEngine::closeLeftLoops() {
   bool moved = false;
   m_pendingLoops.clear();
   m_lastLook = 0;
-  for (std::size_t k = 0; k < m_keyframes.size(); ++k) {
+  for (std::size_t k = m_looked; k < m_keyframes.size(); ++k) {
     if (m_keyframes[k].way < m_lastLook + kLookEvery * m_scale.keyframeDistance) continue;
     m_lastLook = m_keyframes[k].way;
     const auto ways = waysFrom(k);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <vector>
 
 namespace semantic_octree {
@@ -65,9 +66,9 @@ class KeyframeMap {
    * SemanticOcTree::isBroken().
    * \throw std::out_of_range no such keyframe, or a sensor would be outside of the map. */
   CorrectionReport move(const std::vector<KeyframePose>& poses);
-  /** Takes a keyframe's scans out of the map, as if they had never been.
+  /** Takes keyframes' scans out of the map, all at once, as if they had never been.
    * \throw std::out_of_range no such keyframe. */
-  CorrectionReport remove(KeyframeId keyframe);
+  CorrectionReport remove(const std::set<KeyframeId>& keyframes);
 
   /** Keyframes that began, also those that were removed. */
   std::size_t numKeyframes() const;

@@ -3,6 +3,7 @@
 #include <map_operations/Calibrator.h>
 #include <semantic_slam/Slam.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -25,6 +26,11 @@ struct MapperOptions {
   /** With `localize`: a folder for the scans that a closed loop may move, and for what loops are
    * searched in; empty: in memory. */
   std::filesystem::path scans;
+  /** With `localize`, for robots that drive on and on: with so many keyframes some begin to go
+   * where so many others saw the ground that they do not matter, and what they saw goes, too
+   * (Slam::outnumbered()). What is kept grows with the ground, not with the way. Slam's keyframes
+   * are numbered anew then. */
+  std::size_t forgetsFrom = SIZE_MAX;
 };
 
 /** Keeps a robot's map and where the robot is in it. Scans are registered to keyframes that do not
@@ -116,6 +122,7 @@ class Mapper {
                                             const semantic_octree::InsertionOptions& options,
                                             double secondsSince);
   void moveKeyframes(double meters);
+  void forget();
   void calibrate();
   void stateCalibrated();
   double secondsUntil(double seconds) const;
@@ -125,6 +132,8 @@ class Mapper {
   std::vector<bool> m_isMover;
   std::optional<Slam> m_slam;
   std::unique_ptr<semantic_octree::KeyframeMap> m_keyframes;  ///< if the map may be corrected
+  std::vector<semantic_octree::KeyframeId> m_ids;             ///< in it, of m_slam's keyframes
+  std::size_t m_forgetAt;                                     ///< keyframes
   Eigen::Isometry3d m_T_map_odometry = Eigen::Isometry3d::Identity();
   /** What Slam takes for odometry's frame. */
   Eigen::Isometry3d m_T_start_odometry = Eigen::Isometry3d::Identity();

@@ -42,6 +42,9 @@ constexpr double kLeastTimeOfVelocity = 0.05;
 /** The nearest pose whose rotation is one to the last bits: products of products drift. */
 Eigen::Isometry3d rigid(const Eigen::Isometry3d& T);
 
+/** Information of a step and then that of an edge, frame of its end. */
+Matrix6 inSeries(const Matrix6& step, const PoseEdge& then);
+
 /** e^T information e of an edge, e = vectorOf(T_a_b^-1 T_a^-1 T_b). */
 double squaredError(const PoseEdge& edge, const std::vector<Eigen::Isometry3d>& poses);
 

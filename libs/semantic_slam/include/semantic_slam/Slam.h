@@ -98,6 +98,14 @@ class Slam {
   /** Brings all loops into the poses. \return whether poses moved */
   bool finish();
 
+  /** Keyframes that may go: what they saw was seen from so many of before, and from so many later
+   * ones that stay. The early ones hold the map where it is, the late ones say what is there now.
+   * Neither the first nor the last ones; none while places are sought. */
+  std::vector<std::size_t> outnumbered(std::size_t by) const;
+  /** Takes keyframes out that may go; those after them are numbered anew. Poses stay. What leads
+   * from before one to after it becomes one step, by present poses; its loops go. */
+  void forget(const std::vector<std::size_t>& keyframes);
+
   /** T_map_keyframe of all keyframes; the first is where odometry had it, unless the reference says
    * where they are. */
   const std::vector<Eigen::Isometry3d>& poses() const;
