@@ -175,8 +175,7 @@ TEST(FailingAllocations, whileKeyframesAreCorrectedLeaveTheMapOrABrokenOne) {
           EXPECT_TRUE(*map == *before);
           keyframes->insert(a.cloud, b.T_map_sensor);  // it can still grow, and be corrected
           EXPECT_TRUE(*map == grown);
-          keyframes->remove(1);
-          keyframes->remove(0);
+          keyframes->remove({0, 1});
           EXPECT_TRUE(map->empty());
         });
   };
