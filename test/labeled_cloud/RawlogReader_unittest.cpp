@@ -10,6 +10,8 @@
 #include <zstd.h>
 
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <random>
 
 #include "RawlogFile.h"
@@ -180,6 +182,25 @@ TEST(RawlogReader, readsEachKindOfObservationActionAndPointsThatMrptHas) {
   for (const auto& object : objects)
     EXPECT_EQ(countEntries(writeRawlog(folder / "one.rawlog", {object})), 1)
         << object->GetRuntimeClass()->className;
+}
+
+/** MRPT reads any object where points are to come, also another observation, as often as a file
+ * wants: its messages grow with each. */
+TEST(RawlogReader, anObservationWithinAnObservationIsRefused) {
+  const TemporaryFolder folder;
+  const auto file = folder / "nested.rawlog";
+  mrpt::io::CFileOutputStream stream(file.string());
+  auto archive = mrpt::serialization::archiveFrom(stream);
+  mrpt::obs::CObservationPointCloud cloud;
+  archive << cloud;  // its points are nothing: they come last but for the mark
+  stream.close();
+  std::ifstream written(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(written), {}}, nothing = "\x87nullptr";
+  const std::size_t at = bytes.find(nothing);
+  ASSERT_NE(at, std::string::npos);
+  const std::string nested = bytes.substr(0, at) + bytes + bytes.substr(at + nothing.size());
+  const std::string error = errorReadingRawlog(folder.write("nested.rawlog", nested));
+  EXPECT_TRUE(contains(error, "CObservationPointCloud does not belong there")) << error;
 }
 
 TEST(RawlogReader, readsTheRawlogsThatMrptShips) {

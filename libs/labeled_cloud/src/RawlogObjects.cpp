@@ -77,6 +77,7 @@ CSerializable::Ptr RawlogObjects::next() {
   if (id && id == CLASS_ID(CSensoryFrame)) return frame();
   if (id && id == CLASS_ID(CActionCollection)) return actions();
   m_begin = length + name;
+  m_isWhole = true;
   CSerializable::Ptr object = ReadObject();
   expect(object != nullptr, "an empty object");
   return object;
@@ -113,6 +114,7 @@ template <class Object>
 std::vector<std::shared_ptr<Object>> RawlogObjects::objects() {
   std::vector<std::shared_ptr<Object>> objects;
   for (auto n = ReadAs<std::uint32_t>(); n > 0; --n) {
+    m_isWhole = true;
     objects.push_back(ReadObject<Object>());
     expect(objects.back() != nullptr, "what is in a list is nothing, or does not belong there");
   }
@@ -133,7 +135,9 @@ bool RawlogObjects::mayCome(const std::string& className) {
   const bool isOdometry = m_past == std::string(4, '\0');
   if (m_isMovement && !isOdometry && !isA(id, CLASS_ID(mrpt::poses::CPosePDF))) return false;
   m_isMovement = id && id == CLASS_ID(mrpt::obs::CActionRobotMovement2D);
-  return !id || isA(id, CLASS_ID(CObservation)) || isA(id, CLASS_ID(CAction)) || isValue(id);
+  const bool isWhole = std::exchange(m_isWhole, false);
+  if (isWhole && (isA(id, CLASS_ID(CObservation)) || isA(id, CLASS_ID(CAction)))) return true;
+  return !id || isValue(id);
 }
 
 /** No bytes if there are none, or if they must not be read. */
