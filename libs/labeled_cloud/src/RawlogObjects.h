@@ -40,7 +40,6 @@ class RawlogObjects : public mrpt::serialization::CArchive {
   std::string m_last, m_past;  ///< pieces of few bytes that were read: the last, and the one before
   bool m_isMovement = false;   ///< the last class was a movement in the plane
   bool m_isWhole = false;      ///< an observation or action may come, for it is in no other
-  const char* m_stack = nullptr;
   std::string m_problem;
 };
 
