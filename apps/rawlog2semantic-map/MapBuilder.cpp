@@ -214,6 +214,7 @@ void MapBuilder::correctPoses(const semantic_slam::SlamOptions& options, const f
   mapping.localize = true;
   mapping.slam = options;
   mapping.scans = folder;
+  mapping.forgetsFrom = SIZE_MAX;
   if (m_hadContent)
     notes() << "There is a map: poses are corrected to be in its frame, and scans stay where they "
                "are put"

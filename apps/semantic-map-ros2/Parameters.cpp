@@ -154,7 +154,6 @@ semantic_slam::MapperOptions Parameters::mapping() const {
   mapping.localize = node.slam;
   mapping.slam = slam;
   if (node.slam) mapping.scans = fs::temp_directory_path();
-  mapping.forgetsFrom = 1000;  // fewer take no memory to speak of
   return mapping;
 }
 

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 #include <semantic_slam/Slam.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "Recordings.h"
 
@@ -54,6 +56,35 @@ TEST(Slam, aLoopClosesWhenTheNextOneSaysTheSame) {
     EXPECT_LT((edge.T_a_b.translation() - T_a_b.translation()).norm(), 0.1) << edge.b;
   }
   EXPECT_LT(errorsOf(slam.poses(), r).last, 0.3);
+}
+
+/** Else the next loop would move poses back to where they were before the loops that went. */
+TEST(Slam, stepsSayWhatPosesDoAfterKeyframesWithTheirLoopsWent) {
+  const Recording r = recordingOf("village", 1, cameraOf(10));
+  Slam slam({});
+  addAll(slam, r, kRobotCamera);
+  std::vector<Eigen::Isometry3d> kept;
+  std::vector<std::size_t> gone;
+  for (std::size_t k = 0; k < slam.poses().size(); ++k) {
+    const bool hasLoop =
+        std::any_of(slam.edges().begin(), slam.edges().end(),
+                    [k](const PoseEdge& e) { return e.isDoubtful && (e.a == k || e.b == k); });
+    if (hasLoop && k > 0 && k + 20 < slam.poses().size())
+      gone.push_back(k);
+    else
+      kept.push_back(slam.poses()[k]);
+  }
+  ASSERT_GT(gone.size(), 0u);
+  slam.forget(gone);
+  ASSERT_EQ(slam.poses().size(), kept.size());
+  std::size_t steps = 0;
+  for (const PoseEdge& edge : slam.edges()) {
+    ASSERT_LT(edge.b, kept.size());
+    steps += !edge.isDoubtful;
+    const Eigen::Isometry3d T_a_b = kept[edge.a].inverse() * kept[edge.b];
+    EXPECT_TRUE(edge.isDoubtful || edge.T_a_b.isApprox(T_a_b, 1e-9)) << edge.b;
+  }
+  EXPECT_EQ(steps, kept.size() - 1);
 }
 
 TEST(Slam, findsItsWayWithoutOdometry) {

@@ -156,7 +156,6 @@ semantic_slam::MapperOptions DriveConfig::mapping() const {
   mapping.slam.level = true;
   mapping.insertEvery = 3;  // it may wait for somebody to go away
   mapping.scans = fs::temp_directory_path();
-  mapping.forgetsFrom = 1000;  // fewer take no memory to speak of
   return mapping;
 }
 

@@ -50,10 +50,10 @@ auto SlamEngine::edgesOfOthers(const std::vector<bool>& isGone,
   for (PoseEdge edge : m_edges) {
     if (edge.isDoubtful && (isGone[edge.b] || (edge.a != PoseEdge::kMap && isGone[edge.a])))
       continue;
-    if (open && !edge.isDoubtful) {
-      const Pose T_before_b = rigid(m_poses[open->a].inverse() * m_poses[edge.b]);
-      edge = {open->a, edge.b, T_before_b, inSeries(open->information, edge)};
+    if (!edge.isDoubtful) {
+      if (open) edge.information = inSeries(open->information, edge), edge.a = open->a;
       open.reset();
+      edge.T_a_b = rigid(m_poses[edge.a].inverse() * m_poses[edge.b]);  // as loops that go have it
     }
     if (isGone[edge.b]) {
       open = edge;

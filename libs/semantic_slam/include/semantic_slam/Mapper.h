@@ -3,7 +3,7 @@
 #include <map_operations/Calibrator.h>
 #include <semantic_slam/Slam.h>
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -26,11 +26,10 @@ struct MapperOptions {
   /** With `localize`: a folder for the scans that a closed loop may move, and for what loops are
    * searched in; empty: in memory. */
   std::filesystem::path scans;
-  /** With `localize`, for robots that drive on and on: with so many keyframes some begin to go
-   * where so many others saw the ground that they do not matter, and what they saw goes, too
-   * (Slam::outnumbered()). What is kept grows with the ground, not with the way. Slam's keyframes
-   * are numbered anew then. */
-  std::size_t forgetsFrom = SIZE_MAX;
+  /** With `localize`: from so many keyframes on, those go with what they saw that others outnumber
+   * (Slam::outnumbered()). So what is kept grows with the ground, not with the way of a robot that
+   * drives on and on. Fewer take no memory to speak of. For logs, which end: SIZE_MAX. */
+  std::size_t forgetsFrom = 1000;
 };
 
 /** Keeps a robot's map and where the robot is in it. Scans are registered to keyframes that do not

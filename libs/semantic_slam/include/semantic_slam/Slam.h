@@ -102,8 +102,8 @@ class Slam {
    * ones that stay. The early ones hold the map where it is, the late ones say what is there now.
    * Neither the first nor the last ones; none while places are sought. */
   std::vector<std::size_t> outnumbered(std::size_t by) const;
-  /** Takes keyframes out that may go; those after them are numbered anew. Poses stay. What leads
-   * from before one to after it becomes one step, by present poses; its loops go. */
+  /** Takes keyframes out that may go, with their loops; those after them are numbered anew. Poses
+   * stay, and each step is what they say, for loops that go have moved them. */
   void forget(const std::vector<std::size_t>& keyframes);
 
   /** T_map_keyframe of all keyframes; the first is where odometry had it, unless the reference says
