@@ -106,10 +106,11 @@ void ScanConverterOptions::describe(strict_files::OptionList& list) {
   list.add("flying_pixel_threshold", flyingPixelThreshold, "", atLeast(0).below(1),
            "depth images: leaves out pixels that hang in the air at depth edges, farther from both "
            "sides than this share of their depth (0.02); 0: keeps all");
-  list.add("empty_carves", emptyCarves, "",
-           "a pixel or beam without a return says that nothing is within the range that the "
-           "observation states (depth images of ROS: 65 m, so set max_range), beyond which "
-           "returns only carve; not for sensors that lose returns");
+  list.add(
+      "empty_carves", emptyCarves, "",
+      "pixels and beams without a return carve up to the range that the observation states, and "
+      "returns beyond it carve alone. Depth images of ROS state 65 m: set max_range. Not for "
+      "sensors that lose returns");
   labels.describe(list);
 }
 
