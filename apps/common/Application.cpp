@@ -64,7 +64,7 @@ CLI::Option* Outputs::add(CLI::App& app, std::vector<fs::path>& outputs, const s
 }
 
 CLI::Option* Outputs::finish(CLI::App& app, CLI::Option* option) {
-  app.add_flag("-f,--overwrite", m_overwrite, "Write over what is there");
+  app.add_flag("-f,--overwrite", m_overwrite, "Replace files that exist");
   app.add_flag_callback("-q,--quiet", beQuiet, "Say nothing but errors");
   addOther(option);
   return option;

@@ -35,7 +35,9 @@ struct Cli {
   CLI::App* add(const std::string& name, const std::string& what, std::function<Summary()> action) {
     CLI::App* command = app.add_subcommand(name, what);
     outputs.add(*command, conversion.output, "FILE", "Rawlog to write")->required();
-    command->add_option("--frames", frames, "Frames to take, counted from 0 (\"0:2:\": all even)")
+    command
+        ->add_option("--frames", frames,
+                     "Frames to take, counted from 0, LAST included (\"0:2:\": all even)")
         ->type_name("FIRST:STEP:LAST");
     command->callback([this, action] { convert = action; });
     return command;
@@ -69,7 +71,7 @@ struct Cli {
     });
     addClasses(command);
     addNoLabels(command, "The scans without their labels");
-    command->add_flag("--images", conversion.images, "The camera's images (image_2/) come along");
+    command->add_flag("--images", conversion.images, "Write the camera's images (image_2/), too");
     command->add_option("SEQUENCE_DIR", source, "Folder with velodyne/, labels/, calib.txt ...")
         ->required();
   }
@@ -91,7 +93,7 @@ struct Cli {
       return convertPointFiles(pointFiles, labelField, conversion);
     });
     addClasses(command);
-    addNoLabels(command, "x, y and z only");
+    addNoLabels(command, "Points without labels");
     command->add_option("--label-field", labelField, "Field with the labels")
         ->type_name("NAME")
         ->capture_default_str();
@@ -118,7 +120,7 @@ struct Cli {
               return convertRosbag2(source, bag, conversion);
             });
     command->add_option("--classes", conversion.classes, "Class table (YAML)");
-    addNoLabels(command, "x, y and z only");
+    addNoLabels(command, "Points without labels");
     command
         ->add_option("--label-field", bag.labelField,
                      "The points' field with the labels; rgb: colors")

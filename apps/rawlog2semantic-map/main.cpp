@@ -101,7 +101,7 @@ struct Cli {
   void addLabelsTo(CLI::App& app) {
     app.add_option(
            "--labels", labels.folders,
-           "Label images, instead of labels in the rawlog; once for each camera, or for all")
+           "Label images, instead of labels in the rawlog; given once for each camera, or for all")
         ->type_name("[SENSOR=]FOLDER")
         ->allow_extra_args(false);
     app.add_option("--network", labels.network, "Network (ONNX) that labels the color images");

@@ -32,8 +32,8 @@ struct Cli {
     inputs::addMap(app, map);
     app.add_option(
         "--weights", weights,
-        "Solutions: weights of classes (YAML); without: every class counts alike, and a tenth "
-        "of the leaves is kept");
+        "Weights of classes (YAML), one or several solutions; without: every class counts alike, "
+        "and a tenth of the leaves is kept");
     outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
     auto* group = app.add_option_group("size", "Instead of each solution's own alpha");
     group->add_option("--alpha", target.alpha, "Price of a leaf (alpha): a higher one keeps fewer")

@@ -181,7 +181,7 @@ int run(Cli& cli) {
 }  // namespace semantic_map_plan
 
 int main(int argc, char** argv) {
-  CLI::App app("Plans the path of least price of a vehicle over a semantic map");
+  CLI::App app("Plans the cheapest path of a vehicle over a semantic map");
   semantic_map_plan::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_plan::run(cli); });
 }

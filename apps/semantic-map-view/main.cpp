@@ -80,7 +80,9 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_flag("--top", view.top, "From above, north up")->excludes(from);
   std::map<std::string, map_view::ViewColoring> colorings;
   for (const auto& [name, value] : choicesOf(map_view::ViewColoring())) colorings[name] = value;
-  addChoice(app.add_option("--color", view.style.coloring, "What the colors of cells show"),
+  addChoice(app.add_option("--color", view.style.coloring,
+                           "What the colors of cells show; gain: what another look "
+                           "would tell; retained: what the compression keeps"),
             colorings);
   auto* clip = poses::addParsed(
       app, "--clip", "X,Y,Z,X2,Y2,Z2",

@@ -104,8 +104,8 @@ OptionList sensorOptions(Cli& cli) {
   list.add("turn_time", cli.turnTime, "s", between(0, 10),
            "time of a turn of the LiDAR, while the robot moves on; 0: all points at once");
   list.add("ghosts", cli.lidar.ghosts, "", between(0, 1),
-           "share of the LiDAR's beams on windows, cars, water and signs that return by way of "
-           "what these mirror");
+           "share of the LiDAR's beams on windows, cars, water and signs that are reflected, and "
+           "return from something else");
   cli.noise.describe(list);
   list.add("dropout", cli.noise.dropout, "", between(0, 1), "share of rays without a return");
   return list;
@@ -126,7 +126,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "Class table (YAML) of the labels, whose raw ids are ids of the world's classes; "
                  "without: the world's own");
   app.add_option("--truth-query", truthQuery,
-                 "Print what is at each point of this file (lines: x y z)")
+                 "Print the world's class at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
   addNumber(app, "--tolerance", tolerance, strict_files::atLeast(0),
             "A point of the query lies on a surface within this distance of it, m");

@@ -75,7 +75,7 @@ double add(const SemanticOcTree::Belief& belief, double weight, double most,
 void SmoothingOptions::describe(strict_files::OptionList& list) {
   list.add("neighbor_weight", neighborWeight, "", strict_files::between(0, 1),
            "weight of each of the six neighbors in a voxel's class; its own is 1. "
-           "1 mends labels of which 30 % are wrong; less keeps smaller things");
+           "1 is for labels of which 30 % are wrong; less keeps smaller things");
 }
 
 void SmoothingOptions::validate() const { strict_files::checkOptions(*this, "SmoothingOptions"); }
