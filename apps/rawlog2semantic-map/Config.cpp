@@ -63,7 +63,7 @@ void checkForward(const std::vector<mrpt::poses::CPose3D>& poses, const fs::path
     throw std::runtime_error(
         file.string() +
         ": these are poses of a camera (they move along their z axes), expected those of the "
-        "robot, with x forward; dataset2rawlog semantic-kitti turns KITTI's own");
+        "robot, with x forward; dataset2rawlog semantic-kitti converts KITTI's own");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <strict_files/StrictYaml.h>
 
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 namespace semantic_planning {
@@ -15,22 +16,33 @@ using OrderId = colored_graph::GraphClass;
 
 namespace {
 
-OrderId classNamed(const StrictYaml& yaml, const YAML::Node& node, const ClassTable& classes) {
-  const std::string name = yaml.text(node, "a class");
-  if (const auto id = classes.find(name)) return *id;
-  if (name == kUnknownGround) return semantic_types::kNoClass;
-  yaml.fail(node, "the map has no class '" + name + "'");
-}
+class RankReader {
+ public:
+  RankReader(const StrictYaml& yaml, const ClassTable& classes)
+      : m_yaml(yaml), m_classes(classes) {}
 
-/** One class, or a list of them. */
-std::vector<OrderId> readRank(const StrictYaml& yaml, const YAML::Node& node,
-                              const ClassTable& classes) {
-  if (node.IsScalar()) return {classNamed(yaml, node, classes)};
-  yaml.checkList(node, "best_to_worst");
-  std::vector<OrderId> rank;
-  for (const YAML::Node& name : node) rank.push_back(classNamed(yaml, name, classes));
-  return rank;
-}
+  /** One class, or a list of them. */
+  std::vector<OrderId> read(const YAML::Node& node) {
+    if (node.IsScalar()) return {classNamed(node)};
+    m_yaml.checkList(node, "best_to_worst");
+    std::vector<OrderId> rank;
+    for (const YAML::Node& name : node) rank.push_back(classNamed(name));
+    return rank;
+  }
+
+ private:
+  OrderId classNamed(const YAML::Node& node) {
+    const std::string name = m_yaml.text(node, "a class");
+    const auto id = m_classes.find(name);
+    if (!id && name != kUnknownGround) m_yaml.fail(node, "the map has no class '" + name + "'");
+    if (!m_named.insert(name).second) m_yaml.fail(node, "'" + name + "' is named twice");
+    return id.value_or(semantic_types::kNoClass);
+  }
+
+  const StrictYaml& m_yaml;
+  const ClassTable& m_classes;
+  std::set<std::string> m_named;
+};
 
 double readRate(const StrictYaml& yaml, const YAML::Node& node) {
   if (node.IsScalar() && node.Scalar() == "inf") return std::numeric_limits<double>::infinity();
@@ -40,7 +52,8 @@ double readRate(const StrictYaml& yaml, const YAML::Node& node) {
 ClassOrder readOrder(const StrictYaml& yaml, const ClassTable& classes, const YAML::Node& list) {
   yaml.checkList(list, "best_to_worst");
   std::vector<std::vector<OrderId>> ranks;
-  for (const YAML::Node& rank : list) ranks.push_back(readRank(yaml, rank, classes));
+  RankReader reader(yaml, classes);
+  for (const YAML::Node& rank : list) ranks.push_back(reader.read(rank));
   try {
     return ClassOrder(classes.size() + 1, ranks);
   } catch (const std::invalid_argument& e) {
