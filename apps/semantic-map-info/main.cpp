@@ -163,7 +163,7 @@ void printText(const std::string& name, const ordered_json& d, std::ostream& out
     out << std::setprecision(3)
         << "\n  calibration   the filter's class probabilities to the power of "
         << calibration["power"].get<double>() << "; " << 100 * calibration["shared"].get<double>()
-        << " % go evenly to the classes named in the voxel";
+        << " % spread evenly over the classes named in the voxel";
   if (const auto& factors = calibration["factors"]; !factors.empty())
     out << "; times factors of " << std::min_element(factors.begin(), factors.end())->get<double>()
         << " to " << std::max_element(factors.begin(), factors.end())->get<double>() << " by class";
