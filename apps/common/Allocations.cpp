@@ -48,9 +48,9 @@ void* allocateOrThrow(std::size_t size) {
 
 }  // namespace
 
-// As the standard library's, but for the limit. All forms but those for large alignments: a
-// sanitizer has its own for each that is left out, and misses memory that one of them got and
-// another frees. Not inline: or the compiler pairs malloc() here with delete there, and warns.
+// As the standard library's, but for the limit. All forms but those for large alignments. A
+// sanitizer has its own for what is left out, and misses memory that one got and another frees. Not
+// inline: or the compiler pairs malloc() here with delete there, and warns.
 #define NOT_INLINE __attribute__((noinline))
 NOT_INLINE void* operator new(std::size_t size) { return allocateOrThrow(size); }
 NOT_INLINE void* operator new[](std::size_t size) { return allocateOrThrow(size); }

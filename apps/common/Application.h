@@ -68,8 +68,8 @@ void addOptions(CLI::App& app, const strict_files::OptionList& list, const std::
  * expected a number above 0". */
 CLI::Validator isNumber(const strict_files::Range& range);
 
-/** Gives the words that an option may be, which the help lists; case does not matter, and a word
- * that is unknown is answered by the nearest one. */
+/** Gives the words that an option may be, which the help lists. Case does not matter; an unknown
+ * word is answered by the nearest one. */
 inline CLI::Option* addWords(CLI::Option* option, const std::vector<std::string>& words) {
   const auto choose = [words](std::string& value) {
     for (const std::string& word : words)

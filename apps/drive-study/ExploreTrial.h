@@ -10,9 +10,8 @@
 
 namespace drive_study {
 
-/** How places to look from are chosen. The nearest border of what is known; or information of all
- * classes, with unknown space alike in all; or information of what weights ask for, by a learned
- * prior. */
+/** How places to look from are chosen. The nearest border of the known; information of all classes,
+ * with unknown space alike; or information of what weights ask for, by a learned prior. */
 enum class Exploring { Frontier, Plain, Relevant };
 inline strict_files::Choices<Exploring> choicesOf(Exploring) {
   return {{"frontier", Exploring::Frontier},

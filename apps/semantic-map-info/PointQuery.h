@@ -9,8 +9,8 @@ namespace semantic_map_info {
 
 /** What the map knows at each line `x y z` (meters), in the order of the lines. An answer has x, y,
  * z, state (unknown, free or occupied), class id and name (0 and "-" where no class was ever seen),
- * probability and occupancy. A distribution, if asked for, has the probabilities of free space and
- * of the classes that are not 0 in six digits, and nothing where nothing is known.
+ * probability and occupancy. A distribution, if asked for, has free space and the classes that are
+ * not 0 in six digits, and nothing where nothing is known.
  * \throw std::runtime_error naming file and line: not three finite numbers. */
 nlohmann::ordered_json answersAt(const semantic_octree::SemanticOcTree& map,
                                  const std::vector<strict_files::TextLine>& lines,

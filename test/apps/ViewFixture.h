@@ -19,8 +19,8 @@ inline const std::string kViewer = std::string(MSO_BIN_DIR) + "/semantic-map-vie
 constexpr int kWidth = 900, kHeight = 700;
 constexpr semantic_types::Color kRoad{90, 90, 200}, kGrass{60, 200, 60}, kWall{200, 60, 60};
 
-/** Voxels of 0.2 m: in the west road, in the east grass, 10 m x 10 m each, around the origin; in
- * the middle of the grass a block of wall, 2 m high. */
+/** Voxels of 0.2 m around the origin: in the west road, in the east grass, 10 m x 10 m each. Amid
+ * the grass is a block of wall, 2 m high. */
 inline SemanticOcTree smallMap() {
   semantic_types::LabeledCloud cloud;
   const auto add = [&](float x, float y, float z, semantic_types::ClassId id) {

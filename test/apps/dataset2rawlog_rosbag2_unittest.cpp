@@ -25,9 +25,9 @@ Isometry3d at(double x, double y, double z, double heading = 0) {
   return Eigen::Translation3d(x, y, z) * Isometry3d(Eigen::AngleAxisd(heading, Vector3d::UnitZ()));
 }
 
-/** A robot that turns by 90 degrees within two seconds and drives 2 m, and sees three points at
- * each half of a second; its LiDAR is 0.5 m ahead, 1 m up, and looks to the left. The last cloud
- * comes before the transforms that tell where it is. */
+/** A robot turns by 90 degrees within two seconds, drives 2 m, and sees three points each half
+ * second. Its LiDAR is 0.5 m ahead, 1 m up, and looks to the left. The last cloud comes before the
+ * transforms that tell where it is. */
 std::vector<BagMessage> drive(bool bigEndian = false) {
   std::vector<BagMessage> bag = {
       transformMessage("/tf_static", 100, "base_link", "lidar", at(0.5, 0, 1, M_PI / 2)),

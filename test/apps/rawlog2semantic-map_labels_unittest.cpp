@@ -17,8 +17,8 @@
 
 namespace {
 
-/** A camera of 40 x 40 pixels and 90 degrees that looks along the robot's x axis, and a scan of two
- * points ahead: (4, 1, 0), which it sees in the left half of its image, and (4, -1, 0). */
+/** A camera of 40 x 40 pixels and 90 degrees looks along the robot's x axis. A scan has two points
+ * ahead: (4, 1, 0), in the left half of its image, and (4, -1, 0). */
 class CameraMapping : public Rawlog2SemanticMap {
  protected:
   static mrpt::obs::CObservationImage picture(double seconds) {

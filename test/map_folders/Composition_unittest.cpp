@@ -1,5 +1,5 @@
-// What maps can do goes together: whatever is done with a map in a folder of tiles gives, bit for
-// bit, what is done with the same map in memory.
+// Whatever is done with a map in a folder of tiles gives, bit for bit, what is done with the same
+// map in memory.
 #include <gtest/gtest.h>
 #include <map_correction/KeyframeMap.h>
 #include <map_folders/MapFolder.h>

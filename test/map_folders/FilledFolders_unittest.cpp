@@ -27,8 +27,8 @@ std::vector<SemanticOcTree> someMaps() {
   return maps;
 }
 
-/** Fills a map in a folder, saves it, and compares it with the expected one, as it is in the folder
- * and as it comes out of it again. */
+/** Fills a map in a folder, saves it, and compares it with the expected one, in the folder and read
+ * again. */
 template <typename F>
 void expectFilled(const SemanticOcTree& expected, const F& fill) {
   for (const double tileSize : {3.2, 12.8}) {

@@ -17,8 +17,8 @@ inline semantic_types::ClassTable threeClasses() {
   return tableOf({{"road", {200, 30, 30}}, {"tree", {30, 180, 60}}, {"wall", {40, 60, 210}}});
 }
 
-/** Voxels of 0.2 m: a ground of road and trees with a wall upon it, whose points are seen from
- * above the map's origin, with holes and wrong labels. */
+/** Voxels of 0.2 m: ground of road and trees with a wall, seen from above the map's origin, with
+ * holes and wrong labels. */
 inline semantic_octree::SemanticOcTree randomMap(unsigned seed, int numScans = 3) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(0, 1);

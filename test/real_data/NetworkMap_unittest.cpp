@@ -60,8 +60,8 @@ struct Result {
   double singleFrames = 0, map = 0;
 };
 
-/** Counts the points that the network labeled and that have a true class and do not move, and how
- * many of them are right in single frames, and in the map that the labels make under this model. */
+/** Counts the points that the network labeled, that have a true class and do not move. How many are
+ * right in single frames, and in the map that the labels make under this model? */
 Result judgeModel(const std::vector<LabeledFrame>& truth, const std::vector<LabeledCloud>& clouds,
                   const LabelModel& model) {
   SemanticOcTree map(kResolution, kittiTable());

@@ -15,8 +15,8 @@ struct RightPoints {
   double value() const { return double(right) / points; }
 };
 
-/** Counts points near the sensor, which is 1.73 m above the street: the road's in free cells, and
- * in occupied ones those of what stands there, half a meter to one and a half above it. */
+/** Counts points near the sensor, which is 1.73 m above the street. Road is to be in free cells,
+ * what stands half a meter to one and a half above it in occupied ones. */
 void judge(const COccupancyGridMap2D& grid, const LabeledFrame& frame, const ClassTable& classes,
            RightPoints& road, RightPoints& standing) {
   for (std::size_t i = 0; i < frame.cloud.size(); ++i) {

@@ -17,6 +17,6 @@ IncludeTable includeTable(const std::filesystem::path& markdownFile);
 std::vector<std::string> forbiddenIncludes(const std::filesystem::path& libs,
                                            const IncludeTable& table);
 
-/** The first call in each C++ file below a folder of what only <algorithm> has, if the file does
- * not include that: which other headers bring it along changes with the compiler. */
+/** The first call of what only <algorithm> has in each C++ file that does not include that. Which
+ * other headers bring it along changes with the compiler. */
 std::vector<std::string> algorithmsWithoutTheirHeader(const std::filesystem::path& root);

@@ -313,8 +313,8 @@ Garden garden(std::uint32_t seed) {
           {right, 0, between(-M_PI, M_PI)}};
 }
 
-/** A goal behind a hedge that ends 25 m behind the robot, and ahead of it at the garden's border,
- * so that there is always hope for a gap just beyond what is seen. */
+/** A goal behind a hedge that ends 25 m behind the robot, and ahead at the garden's border. So
+ * there is always hope for a gap just beyond what is seen. */
 Garden lane() {
   synthetic_world::Solids solids;
   for (double y = -25; y < kFar; y += 5) {

@@ -1,7 +1,7 @@
-// A program that knows MRPT but nothing of this project: `plugin_host [PLUGIN.so]` makes a map by
-// its name in an .ini text, fills it, copies it through an archive, and prints what it is.
-// `plugin_host PLUGIN.so FILE.ini PREFIX` makes that of the file, drives there and back, prints the
-// likelihood of what it sees on the way, and saves the map.
+// A program that knows MRPT but nothing of this project. `plugin_host [PLUGIN.so]` makes a map by
+// its name, fills it, copies it through an archive, and prints it. `plugin_host PLUGIN.so FILE.ini
+// PREFIX` makes that of the file, drives there and back, prints the likelihood of what it sees on
+// the way, and saves the map.
 #include <dlfcn.h>
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt/config/CConfigFileMemory.h>

@@ -2,9 +2,9 @@
 #include "PlainMap.h"
 #include "RandomScans.h"
 
-/** Scans of 8 x 8 x 8 voxels (8 blocks) of 1 m, from the origin upwards. They do to a block all
- * that can be done: hits of single voxels, octants and whole blocks, with one label, several or
- * none, and beams through all of it or a part. */
+/** Scans of 8 x 8 x 8 voxels (8 blocks) of 1 m, from the origin upwards. They hit single voxels,
+ * octants and whole blocks, with one label, several or none, and beam through all of a block or a
+ * part. */
 class BlockScans {
  public:
   BlockScans(unsigned seed, int classes) : m_random(seed), m_classes(classes) {}

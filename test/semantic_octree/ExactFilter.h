@@ -64,8 +64,8 @@ class ExactFilter {
     for (const auto& [id, count] : votes) labels.insert(labels.end(), count, id);
     return labels;
   }
-  /** ln p(labels | class k) by the chain rule: Polya's urn holds a share 1 - r of balls as the
-   * class has them, and takes r more of the color of each that is drawn (r / (1 - r) = 1 / s). */
+  /** ln p(labels | class k) by the chain rule. Polya's urn holds a share 1 - r of balls as the
+   * class has them. It takes r more of the color of each that is drawn (r / (1 - r) = 1 / s). */
   double logLikelihoodOf(const std::vector<int>& labels, int k) const {
     const double r = m_correlation, wrong = (1 - m_accuracy) / (K() - 1);
     std::map<int, int> drawn;

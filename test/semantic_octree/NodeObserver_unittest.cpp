@@ -126,8 +126,8 @@ constexpr int kClasses = 5;
 constexpr float kSure = 4;
 const float kLogClasses = onGrid(std::log(kClasses));
 
-/** A voxel is what the last scan that met it saw there: free, occupied, or the class that most of
- * its labels name (of several, the lowest id). */
+/** A voxel is what the last scan saw there: free, occupied, or the class that most labels name (of
+ * several, the lowest id). */
 class LastSeen {
  public:
   LastSeen trusting(const LabelReliability&) const { return *this; }

@@ -6,8 +6,8 @@ using namespace semantic_planning;
 
 namespace {
 
-/** A road of 3 m along y = 0 in the grass: wide enough to turn around on in several moves, too
- * narrow for a turn of 1 m to both sides of which there are wheels. */
+/** A road of 3 m along y = 0 in the grass. It is wide enough to turn around in several moves, and
+ * too narrow for one turn of 1 m with wheels on both sides. */
 class PoseSearchTest : public PathTest {
  protected:
   static constexpr double kTolerance = 0.2, kHalfWidth = 1.5;

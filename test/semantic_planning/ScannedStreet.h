@@ -6,8 +6,8 @@
 
 #include "PaintedWorld.h"
 
-/** A street that a LiDAR scans as it drives along it (y), 1.8 m above the ground at x = 0: rings,
- * holes between them, and, if wanted, returns that came by way of mirrors. */
+/** A street that a LiDAR scans as it drives along y, 1.8 m above the ground at x = 0. There are
+ * rings, holes between them, and, if wanted, mirrored returns. */
 class ScannedStreet {
  public:
   struct Lidar {

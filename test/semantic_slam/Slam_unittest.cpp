@@ -45,8 +45,7 @@ TEST(Slam, closesTheLoopOfASingleCamera) {
 }
 
 TEST(Slam, aLoopClosesWhenTheNextOneSaysTheSame) {
-  // 10 m of range: by the time the robot is back it is 7 m off, and some of what it sees fits
-  // places where it is not.
+  // 10 m of range: back at the start the robot is 7 m off, and sees things that fit elsewhere.
   const Recording r = recordingOf("village", 1, cameraOf(10));
   Slam slam({});
   addAll(slam, r, kRobotCamera);

@@ -54,8 +54,8 @@ inline const char* const kLaserRawlog = "2006-01ENE-21-SENA_Telecom Faculty_one_
 #define SKIP_WITHOUT(PATH, PACKAGE) \
   if (!std::filesystem::exists(PATH)) GTEST_SKIP() << "needs " << (PATH) << " (package " PACKAGE ")"
 
-/** A semantic octree of a laser scanner beside a points map of the same scans (as MRPT saves it, a
- * line "x y z" a point) and the path of the robot ("step x y phi" or more). */
+/** A semantic octree of a laser scanner, a points map of the same scans (as MRPT saves it, a line
+ * "x y z" a point), and the robot's path ("step x y phi" or more). */
 struct LaserMapCheck {
   double pointsInOccupied = 0;  ///< share of the points that lie in an occupied voxel or beside one
   double occupiedAtPoints = 0;  ///< share of occupied voxels with such a point

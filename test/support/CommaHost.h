@@ -3,8 +3,8 @@
 #include <locale>
 #include <string>
 
-/** As long as this lives, the process is a host whose numbers have decimal commas and points
- * between thousands: std::locale::global(), and setlocale() where such a locale is installed. */
+/** While this lives, the process writes decimal commas and points between thousands:
+ * std::locale::global(), and setlocale() where such a locale is installed. */
 class CommaHost {
  public:
   CommaHost()

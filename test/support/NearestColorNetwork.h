@@ -9,8 +9,8 @@
 /** How sure NearestColorNetwork is: score = -kSharpness * squared distance of colors in 0..1. */
 constexpr float kSharpness = 20;
 
-/** A network that answers the class whose color is nearest to the pixel's: a 1 x 1 convolution, as
- * -|p - c|^2 is 2 p c - |c|^2 but for what all classes share. */
+/** A network that answers the class of the nearest color: a 1 x 1 convolution, as -|p - c|^2 is 2 p
+ * c - |c|^2 but for what all classes share. */
 inline std::filesystem::path saveNearestColorNetwork(const std::filesystem::path& file, int rows,
                                                      int cols,
                                                      const semantic_types::ClassTable& table) {

@@ -259,8 +259,8 @@ std::string documentedArguments() {
   return match[1];
 }
 
-// Processors differ in the last digit of sines and logarithms: a value on the brink between two
-// millimeters or two classes may fall to either side, in a few pixels of a million.
+// Processors differ in the last digit of sines and logarithms. A value between two millimeters or
+// classes may fall to either side, in a few pixels of a million.
 constexpr double kFewPixels = 1e-4;
 
 void expectSameImage(const CObservation3DRangeScan& a, const CObservation3DRangeScan& b) {

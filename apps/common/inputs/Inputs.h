@@ -70,8 +70,8 @@ class TileProgress {
 /** \throw std::runtime_error naming the first that is given twice: it would count twice. */
 void checkOnce(const std::vector<std::filesystem::path>& files);
 
-/** \throw std::runtime_error naming the first that is given twice, or is a folder or a file of
- * another kind, what it is, and which command makes a rawlog of it. */
+/** \throw std::runtime_error naming the first that is given twice, or is a folder or another kind
+ * of file, and which command makes a rawlog of it. */
 void checkRawlogs(const std::vector<std::filesystem::path>& files);
 
 }  // namespace inputs

@@ -188,8 +188,8 @@ struct InverseDepths {
   std::size_t index(int row, int col) const { return (row + kReach) * stride + col + kReach; }
 };
 
-/** Whether the pixel at W continues the surface that begins STEP beside it: as near as its
- * neighbor, or on the plane through the next three pixels. */
+/** Whether the pixel at W continues the surface STEP beside it: as near as its neighbor, or on the
+ * plane through the next three. */
 bool continues(const float* w, std::ptrdiff_t step, float tolerance) {
   const float here = w[0], a = w[step], b = w[2 * step], c = w[3 * step];
   if (std::abs(here - a) <= tolerance) return true;

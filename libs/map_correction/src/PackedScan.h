@@ -34,9 +34,9 @@ struct PackedTile {
   }
 };
 
-/** The voxels of a scan, tile by tile, ascending: what it takes to merge the scan, or a part of it,
- * without following its beams once more. It is the same whenever the scan is traced from the same
- * pose. For this process only. */
+/** A scan's voxels, tile by tile, ascending: enough to merge the scan or a part of it without
+ * following its beams again. It is the same whenever the scan is traced from the same pose. For
+ * this process only. */
 class PackedScan {
  public:
   PackedScan(bool soft, const LabelReliability& labels) {

@@ -50,8 +50,8 @@ struct TileIndex {
 
   static constexpr int kVersion = 2;
   static constexpr const char *kWriterLock = ".writer.lock", *kReadersLock = ".readers.lock";
-  /** Up to which an index is read, and up to which a folder is opened to write: no process saves as
-   * often as there are generations in between. */
+  /** The last generation to read, and to open for writing. No process saves as often as there are
+   * generations between. */
   static constexpr std::uint64_t kMostToRead = (std::uint64_t(1) << 53) - 1,
                                  kMostToWrite = std::uint64_t(1) << 52;
 };

@@ -77,8 +77,8 @@ VoxelBox voxelsIn(const Eigen::AlignedBox3d& box, double resolution) {
 }
 
 /** A cube of the coarse map and the node of the fine map for it. The fine map fills the middle of
- * the coarse one: down to depth `levels` the cubes that touch the middle hold one octant of it
- * each, and `node` is still the fine map's root. */
+ * the coarse one. Down to depth `levels` the cubes that touch the middle hold one octant of it
+ * each; `node` is still the fine map's root. */
 class CoarseCursor {
  public:
   CoarseCursor(const SemanticOcTree& map, int levels)

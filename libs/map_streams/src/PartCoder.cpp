@@ -10,12 +10,13 @@ namespace semantic_octree {
 
 /** How parts become bits, in both directions: see RangeCoder.h.
  *
- * A part: distance of its root (the cube of the trees' roots that it lies in) from that of the part
- * before; whether it is an octet; of an octet, its depth below the root, its path from there, and
- * the mask of children; of a leaf, its depth. Then each leaf: none, plain or with a record. A plain
- * one has its log-odds. A record is that of the leaf before, one of the frequent ones, or written
- * out. Then come the number of named classes, which ones, the log-odds of the rest, and what the
- * named ones have more. At the end come the leaf's log-odds, if they do not follow from that. */
+ * A part begins with the distance of its root (the cube of the trees' roots that it lies in) from
+ * that of the part before, and whether it is an octet. An octet has its depth below the root, its
+ * path from there, and the mask of children; a leaf its depth. Then each leaf: none, plain or with
+ * a record. A plain one has its log-odds. A record is that of the leaf before, one of the frequent
+ * ones, or written out. Then come the number of named classes, which ones, the log-odds of the
+ * rest, and what the named ones have more. At the end come the leaf's log-odds, if they do not
+ * follow from that. */
 template <typename Coder>
 class PartFormat {
  public:

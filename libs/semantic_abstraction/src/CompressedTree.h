@@ -6,8 +6,8 @@
 
 namespace semantic_octree {
 
-/** G-tree search, its second half: the walk from a map's root down, along the nodes that GTree has
- * found worth expanding, to the leaves of the compressed tree. */
+/** The second half of G-tree search: from a map's root down, along the nodes that GTree found worth
+ * expanding, to the compressed tree's leaves. */
 class CompressedTree {
  public:
   CompressedTree(const NodeStore& store, const GTree& gTree) : m_store(store), m_gTree(gTree) {}

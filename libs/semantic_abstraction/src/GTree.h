@@ -90,11 +90,10 @@ struct InnerNode : NodeSummary {
   const double* divergences = nullptr;  ///< JS_t, nats, in the layout's order
 };
 
-/** G-tree search in a map that grows, its first half (Larsson et al., algorithm 1): from the leaves
- * up, it computes inner nodes' bookkeeping: weight, class mixture, divergences, and the G-value
+/** The first half of G-tree search (Larsson et al., algorithm 1) in a map that grows. From the
+ * leaves up, it computes inner nodes' weight, class mixture, divergences, and the G-value
  *   G_Pi(n) = max(0, sum_t weight_t JS_t(n) - alpha H(Pi_n) + sum_c Pi_c G_Pi(c)),
- * where alpha and the weights are those of AbstractionOptions. The second half, from the root down
- * along the nodes whose G-value is above 0, is CompressedTree.
+ * where alpha and the weights are those of AbstractionOptions. The second half is CompressedTree.
  *
  * A scan recomputes the nodes above the voxels that it changed, each once, from their eight
  * children. None is adjusted, so the order of updates leaves no trace. */

@@ -213,8 +213,8 @@ DrivePath DriveGuide::joined(const Departure& from, const Situation& now, DriveP
   return m_turns.find(path, before.length(), PathJudgment::kSameLength).value_or(path);
 }
 
-/** If what was found is no better than the present path, it is the rest of that with a turn ahead
- * for which there was no room before. */
+/** If the find is no better than the present path, it is its rest with a turn ahead for which there
+ * was no room before. */
 bool DriveGuide::improves(const Departure& from, const Situation& now) {
   if (isBetter(now)) return true;
   const PathTracker& tracker = now.drive.tracker();
@@ -308,8 +308,8 @@ bool DriveGuide::aimsElsewhere(const Situation& now) {
   return true;
 }
 
-/** Along the vehicle's own track to where it can plan, and a little on: what is close to it may be
- * out of its sensors' sight, and left nobody knows where. */
+/** Along the vehicle's own track to where it can plan, and a little on, for what is close may be
+ * out of its sensors' sight. */
 std::optional<DrivePath> DriveGuide::back(const Situation& now) const {
   std::vector<PathPoint> points = now.drive.track().back();
   double z = now.z;

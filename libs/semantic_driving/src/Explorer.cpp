@@ -18,10 +18,10 @@ using namespace semantic_planning;
 
 namespace {
 
-/** The least way from anywhere on to a goal, if all that is not known to be in the way is not (the
- * freespace assumption: Koenig and Likhachev, "D* Lite", 2002). A search from the goal: ground that
- * is reached counts as its rank, all else as the unknown. Ways are in buckets (Dial, "Algorithm
- * 360", 1969) instead of a heap. */
+/** The least way from anywhere on to a goal, if only known obstacles are in the way (the freespace
+ * assumption: Koenig and Likhachev, "D* Lite", 2002). A search from the goal: ground that is
+ * reached counts as its rank, all else as the unknown. Ways are in buckets (Dial, "Algorithm 360",
+ * 1969) instead of a heap. */
 class WayLeft {
  public:
   /** \param asked for each column of the rectangle, whether from() may be asked there */

@@ -8,8 +8,8 @@
 
 namespace semantic_driving {
 
-/** Where the last part of any way to a goal lies: the columns that a flood from the goal gets to
- * without passing where the vehicle can get over known ground, or where it must not be.
+/** Where the last part of any way to a goal lies. A flood from the goal gets to these columns
+ * without passing where the vehicle can get over known ground, or must not be.
  *
  * A way to the goal leaves the reached columns for the last time at the region's border. Exploring
  * helps only from there. If they do not border on the region, nothing helps: what is known to be in

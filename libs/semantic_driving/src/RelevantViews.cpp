@@ -266,8 +266,8 @@ const View& RelevantViews::firstOf(const std::vector<Candidate>& stops,
   return stops[firstStop(ways, worth)].view;
 }
 
-/** What the way since the last choice promised and brought; and, as m_left says how far back one
- * has to look, the way that promised as much as is left. */
+/** What the way since the last choice promised and brought, and the way that promised as much as is
+ * left (m_left says how far back). */
 void RelevantViews::takeAccount(const TPose2D& from) {
   Account now = m_accounts.back();
   if (m_chosen) {
@@ -344,8 +344,8 @@ std::string RelevantViews::conclusion() const {
   return text;
 }
 
-/** What is left to see of a column: what may stand there, and the first ground from above, as far
- * as these are unknown; of known surfaces, what another look tells. */
+/** What is left to see of a column: what may stand there and the first ground from above, if
+ * unknown; what another look tells of known surfaces. */
 double RelevantViews::left(Column c) {
   constexpr int kBelow = 10;  // voxels
   constexpr int kEdge = UnknownPatch::kEdge;

@@ -8,8 +8,8 @@
 namespace semantic_driving {
 
 /** What takes a vehicle out of the way of those who walk into it. Arcs both ways, driven for some
- * time, are compared with coming to rest: the one that keeps those who walk farthest away wins, up
- * to DriveOptions::kMoverMargin, and among equals the shortest. People go on as they walk now.
+ * time, are compared with coming to rest. What keeps walkers farthest away wins, up to
+ * DriveOptions::kMoverMargin; among equals the shortest. People go on as they walk now.
  * \param motion now \param room what the vehicle must not touch: obstacles, and what is not known
  * to be ground; vehicle's frame \param movers map frame
  * \return nothing if nobody walks into it, or nothing helps */

@@ -244,8 +244,8 @@ std::vector<SensorScan> Navigator::withoutPassing(std::vector<SensorScan> seen) 
   return seen;
 }
 
-/** Nothing is where the robot is, and nobody where somebody was who walked away: sensors that do
- * not see that near, or that low, leave in the map what was there. */
+/** Nothing is where the robot is, nor where somebody was who walked away. Sensors that do not see
+ * that near or low leave it in the map. */
 void Navigator::carve(const Mapper::Place& at, const std::vector<Eigen::Vector2d>& left) {
   constexpr int kSure = 10;      // beams until it is free, whatever was seen before
   constexpr double kBody = 0.4;  // m

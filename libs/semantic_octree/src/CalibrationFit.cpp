@@ -34,8 +34,9 @@ void CalibrationFit::add(const ClassBelief<float>& belief, const std::vector<dou
 /** Sums over questions of what a step needs. */
 struct CalibrationFit::Step {
   double slope = 0, curvature = 0, ofShared = 0, all = 0;
-  // By classes, only if they have factors: what cells are, what is stated of those that name the
-  // class, and, per unit of the factor, of those that do not; of all cells as if they named none.
+  // By classes, only if they have factors: what cells are, what is stated of cells that name the
+  // class, and, per unit of the factor, of the others. `unnamed`: of all cells as if they named
+  // none.
   std::vector<double> is, stated, others;
   double unnamed = 0;
 
@@ -85,9 +86,9 @@ struct CalibrationFit::Step {
       others[k] -= total * odds[3];
     }
   }
-  /** Maximization, one step of Newton's for the power; factors are scaled by what cells are over
-   * what is stated (Darroch and Ratcliff, "Generalized Iterative Scaling for Log-Linear Models",
-   * 1972), with so many that are as stated beside. Their mean is 1. */
+  /** Maximization: one Newton step for the power. Factors are scaled by what cells are over what is
+   * stated, with so many that are as stated beside (Darroch and Ratcliff, "Generalized Iterative
+   * Scaling for Log-Linear Models", 1972). Their mean is 1. */
   Calibration after(const Calibration& now) const {
     const double step = curvature > 0 ? slope / curvature : 0;
     Calibration next{std::clamp(now.power + std::clamp(step, -kLargestStep, kLargestStep),

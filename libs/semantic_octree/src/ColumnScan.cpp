@@ -124,8 +124,8 @@ class TileScan {
   Stacks<Space> m_spaces;
 };
 
-/** Log-odds of a free voxel that beams of two scans passed, at most: halfway between one and two,
- * but no less than what any number of scans leads to. */
+/** At most the log-odds of a free voxel that two scans' beams passed: halfway between one and two,
+ * but no less than any number leads to. */
 float sureOf(const SemanticOcTree& map) {
   const ClassFilter<float> filter(map.numClasses(), map.filterParameters());
   return std::max(1.5f * filter.missIncrement(), filter.lowestOccupancy());

@@ -8,8 +8,8 @@
 
 namespace semantic_octree {
 
-/** How a map forgets. At each multiple of T / 8 on the map's clock, a leaf with the half-life T
- * keeps 2^(-1/8) of its log-odds of occupancy, and of the differences between those of its classes
+/** How a map forgets. At each multiple of T / 8 on the map's clock a leaf with half-life T keeps
+ * 2^(-1/8) of its log-odds of occupancy, and of its classes' differences
  * (doc/how-it-works/decay.md).
  *
  * A leaf's half-life is that of its likeliest class, or of free space where it is not occupied. An

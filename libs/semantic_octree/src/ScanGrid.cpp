@@ -218,8 +218,8 @@ class RayLanes {
 
  private:
   static constexpr std::size_t kNumRays = 2 * kNumLanes;
-  /** Neighbors in a scan would often be in the same byte at the same time, so that one waits for
-   * the other: among rays of as many steps, those that follow each other are so far apart. */
+  /** Neighbors in a scan would often be in one byte at the same time, and wait for each other. So
+   * rays of as many steps follow each other so far apart. */
   static constexpr std::size_t kApart = 16;
 
   /** The ends of rays, those with the fewest steps first. Before them are rays without any, so that

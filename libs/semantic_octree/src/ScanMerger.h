@@ -19,10 +19,9 @@ struct ScanCube {
 
 /** Carries a scan's voxels into a subtree, in one thread.
  *
- * The tree is descended once per tile of 8 x 8 x 8 voxels; on the way back up each inner node below
- * which something changed is pruned or recomputed once. A cube that the tree holds as one leaf and
- * that the scan saw free as a whole gets one update: the same values as updating its voxels one by
- * one and pruning. */
+ * The tree is descended once per tile of 8 x 8 x 8 voxels. On the way up each inner node above a
+ * change is pruned or recomputed once. One leaf of the tree that the scan saw free as a whole gets
+ * one update: the values of updating its voxels one by one and pruning. */
 class ScanMerger {
  public:
   /** \param rule the target's, for this scan's labels \param thread number of the thread that it

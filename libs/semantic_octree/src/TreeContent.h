@@ -153,13 +153,13 @@ class CheckedReader {
  *   bytes, nanoseconds), factors of classes if there are any (doubles),
  * number of nodes (8 bytes; 0: the map is empty), the root's NodeKind (1 byte) and value,
  * then from each inner node on, depth first: two bits of NodeKind per child (2 bytes), the leaves'
- * values, the inner children. The value of a leaf is its log-odds; with a class record, followed by
- * the number of named classes (1 byte), the rest's log-odds, and id (1 byte) and log-odds of each.
+ * values, the inner children. The value of a leaf is its log-odds. Its class record, if any, has the
+ * number of named classes (1 byte), the rest's log-odds, and id (1 byte) and log-odds of each.
  * Log-odds are 2 bytes, in units of 1/1024. Inner nodes' values follow from their children.
  *
- * An inner node at depth 14 is a block: which octants are known, leaves, leaves with a record (1
- * byte each); of each known octant that is no leaf, which voxels are known, which have a record (1
- * byte each); all log-odds, then all records, in the order of the voxels. */
+ * An inner node at depth 14 is a block. First come which octants are known, leaves, leaves with a
+ * record (1 byte each). Then each known octant that is no leaf: which voxels are known, which have
+ * a record (1 byte each). Last come all log-odds, then all records, in the order of the voxels. */
 constexpr std::array<char, 8> kMagic{'S', 'E', 'M', 'O', 'C', 'T', 'R', 'E'};
 constexpr std::uint32_t kVersion = 5;
 

@@ -12,8 +12,8 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-/** So many beams pass until a voxel that was surely occupied is surely free, and the other way
- * round it takes less: what was seen before does not matter any more. */
+/** So many beams turn a voxel from surely occupied to surely free (the other way takes fewer), so
+ * earlier looks matter no more. */
 std::size_t scansThatDecide(const semantic_octree::FilterParameters& p) {
   const auto logOdds = [](double q) { return std::log(q / (1 - q)); };
   const double whole = logOdds(p.maxProbability) - logOdds(p.minOccupancy);

@@ -99,8 +99,8 @@ void MotionNoise::note(const Eigen::Isometry3d& T_step, const Eigen::Isometry3d&
   const Deviations first = deviationsOf(T_step);
   const Vector6 off = vectorOf(T_off);
   const Matrix6 covariance = information.inverse();
-  // Walls beside the robot say nothing of how far it goes along them, and so little of the whole:
-  // the harmonic mean of what scans tell of both directions.
+  // The harmonic mean of what scans tell of both directions: walls beside the robot tell nothing of
+  // the way along them, and so little of the whole.
   const Matrix6 predicted = this->information(T_step);
   const auto toldOf = [&](int axis) {
     return std::clamp(1 - covariance(axis, axis) * predicted(axis, axis), 1e-3, 1.);

@@ -11,15 +11,15 @@ namespace semantic_slam {
 using semantic_types::LabeledCloud;
 using PlanePoints = std::vector<Eigen::Vector2d>;
 
-/** What stands upright in a cloud, seen from above: the points themselves of horizontal beams, and
- * of beams in space the columns of a grid that reach from low to high.
+/** What stands upright in a cloud, seen from above: the points of horizontal beams, or, of beams in
+ * space, grid columns that reach from low to high.
  * \param cell edge of a column, m; a column counts if it is three times as high */
 PlanePoints uprightPoints(const LabeledCloud& cloud, bool isPlanar, double cell);
 
-/** Where in a plane a scan fits best, in a window that may be large: exhaustive search by branch
- * and bound (Hess et al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). For each
- * heading it begins with the coarsest squares most of which bounds exclude, all of them, in rows as
- * they stand in memory. Scores are integers, so that every machine finds the same. */
+/** Where in a plane a scan fits best: exhaustive search of a window by branch and bound (Hess et
+ * al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). For each heading it begins with the
+ * coarsest squares most of which bounds exclude, all of them, in rows as they stand in memory.
+ * Scores are integers, so that every machine finds the same. */
 class PlaneSearch {
  public:
   /** \param points that others saw, m \param cell edge of the grid's cells, m */

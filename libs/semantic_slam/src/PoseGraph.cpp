@@ -11,9 +11,8 @@ namespace {
 constexpr int kMostSteps = 50;
 /** Cauchy's c^2: beyond some standard deviations of six values together an edge counts less. */
 constexpr double kDoubt = 16;
-/** An edge may be far off at first, and right: doubt begins with the largest error and grows in
- * such steps (graduated non-convexity: Yang et al., "Graduated Non-Convexity for Robust Spatial
- * Perception", 2020). */
+/** A right edge may be far off at first. So doubt begins with the largest error and grows in such
+ * steps (Yang et al., "Graduated Non-Convexity for Robust Spatial Perception", 2020). */
 constexpr double kStage = 16;
 constexpr double kConverged = 1e-6;
 

@@ -20,11 +20,11 @@ constexpr int kMostIterations = 40;
 constexpr double kStill = 2e-4, kStillCoarse = 2e-3, kPerMeter = 0.1;
 /** A distribution has as many points at least as its covariance has numbers. */
 constexpr int kFewestInSpace = 6, kFewestInPlane = 3;
-/** Least standard deviation of a surface, of a cube's edge: in small cubes it counts as thin as it
- * is, and those of large ones reach out to points that are far off yet. */
+/** Least standard deviation of a surface, of a cube's edge. In small cubes it counts as thin as it
+ * is; large ones reach out to points that are far off yet. */
 constexpr double kThinnest = 0.03;
-/** Evidence of a filled cube by so many standard deviations of its points' variance is chance: else
- * a wall without an end would tell a little of the way along it. */
+/** A filled cube's evidence up to so many standard deviations of its points' variance is chance.
+ * Else an endless wall would tell of the way along it. */
 constexpr double kByChance = 2;
 /** The least ratio of a surface's two widths, squared. A narrow one is but a ring that a LiDAR left
  * on it. */

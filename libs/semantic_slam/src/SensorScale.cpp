@@ -8,8 +8,8 @@ namespace semantic_slam {
 namespace {
 
 /** From the robot, m: half of the surface that a scan sees is nearer; 0 of none. Beams diverge, so
- * each stands for the more surface the farther it goes: the ground before a camera has most of its
- * pixels, but is not its surroundings. */
+ * each stands for more surface the farther it goes. The ground before a camera has most pixels, but
+ * is not its surroundings. */
 double medianDistance(const LabeledCloud& cloud) {
   std::vector<double> squares;
   for (const Eigen::Vector3f& p : cloud.points) squares.push_back(p.squaredNorm());

@@ -16,7 +16,7 @@ namespace semantic_slam {
 /** Share of a stretch's points where the place that it is compared with has some, at least. */
 constexpr double kCovered = 0.3;
 /** Points that all searches of a keyframe look up at most while the robot drives: half a second of
- * a desktop's core, so that scans need not wait. At the end each search has all that it needs. */
+ * a desktop's core. At the end each search has all that it needs. */
 constexpr std::size_t kLiveLooks = 300'000'000;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);
@@ -81,8 +81,8 @@ class SlamEngine {
   bool beginsKeyframe(const Pose& T_last_robot) const;
   void noteFound(const Pose& T_step, const Pose& T_last_robot, const Registration& registered);
   void noteLost(const Pose& T_step);
-  /** Whether a scan tells more of where the robot is, in each direction, than its wheels do from
-   * one end to the other of what it is registered to. */
+  /** Whether a scan tells more of the robot's place, in each direction, than wheels do over the
+   * length of what it is registered to. */
   bool isHeld(const Matrix6& ofScan) const;
   /** Whether scans move while odometry does not. \param T_moved by this scan */
   void noteStanding(const Pose& T_moved);

@@ -64,8 +64,8 @@ std::size_t continuationOf(unsigned char first) {
   return first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
 }
 
-/** Bytes of the letter in UTF-8 that begins there; 0 if there is none, a control character, or one
- * that ends a line or turns what follows around. */
+/** Bytes of the UTF-8 letter that begins there; 0 if there is none, or a control character, or one
+ * that ends a line or turns text around. */
 std::size_t printableBytes(const std::string& text, std::size_t begin) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[begin + i]); };
   const std::size_t more = continuationOf(at(0));

@@ -99,8 +99,8 @@ Bounds informationOfViews(const std::vector<std::vector<double>>& reached,
 }
 
 /** What is told of each cell grows by its information. That is counted from the mean over all
- * cells, which moves: the expected divergence of the mean is at most its expected chi-square
- * distance, a sum over cells, as what moves them is not correlated. */
+ * cells, which moves. The mean's expected divergence is at most its expected chi-square distance: a
+ * sum over cells, as what moves them is not correlated. */
 Bounds growthOfTree(const Question& question, const BeamModel& model,
                     const std::vector<std::vector<double>>& beliefs,
                     const std::vector<double>& reached, const std::vector<double>& counts) {

@@ -52,8 +52,8 @@ ColorImage colorImageOf(const mrpt::obs::CObservation& observation);
  * camera's view, to hide it. */
 constexpr double kOcclusionParallax = 1.5;
 
-/** The pixel (column, row) at which a camera sees each point; NaN for points that it does not see:
- * outside of the image, behind the camera, not finite, or hidden.
+/** The pixel (column, row) at which a camera sees each point; NaN for points outside of the image,
+ * behind the camera, not finite, or hidden.
  *
  * A point may be hidden if the sensor is at a distance b from the camera. From it two points at
  * depths z and Z on one ray of the camera are b f (1/z - 1/Z) pixels apart. What hides a point is

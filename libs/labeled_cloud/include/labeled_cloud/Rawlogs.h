@@ -37,9 +37,9 @@ class RawlogReader {
   ~RawlogReader();
 
   /** The next entry, or nothing at the end.
-   * \throw std::runtime_error naming the file, the number of the object and the byte: no object at
-   * all, cut off, corrupt, or an object of a class that is not registered or not of a rawlog.
-   * After that the reader is at its end. */
+   * \throw std::runtime_error naming file, object and byte: no object at all, cut off, corrupt, or
+   * an object of a class that is not registered or not of a rawlog. After that the reader is at its
+   * end. */
   std::optional<RawlogEntry> next();
 
   /** Bytes read of the file, for progress. */

@@ -160,9 +160,8 @@ class ScanConverter {
   static bool accepts(const mrpt::obs::CObservation& observation);
 
   /** The observation's scan, or nothing if it is of another class than those above.
-   * \throw std::runtime_error why an observation of these classes cannot be used: no range data, no
-   * calibration, labels of another size than their image, an unknown class, an external file
-   * that is missing. */
+   * \throw std::runtime_error why an observation cannot be used: no range data, no calibration,
+   * labels of another size than their image, an unknown class, a missing external file. */
   std::optional<LabeledScan> convert(const mrpt::obs::CObservation& observation);
 
   /** From now on, scans come with the pictures that their labels were taken from. */

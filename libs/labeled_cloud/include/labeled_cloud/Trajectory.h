@@ -65,8 +65,8 @@ class Trajectory {
 
 /** Reads a trajectory in the TUM RGB-D text format: `t tx ty tz qx qy qz qw` a line, seconds and
  * meters, '#' begins a comment.
- * \throw std::runtime_error naming file and line: unreadable or empty file, a line that is not
- * eight numbers, a quaternion that is not of unit length (within 1 %), a time that comes twice. */
+ * \throw std::runtime_error naming file and line: unreadable, empty, a line that is not eight
+ * numbers, a quaternion not of unit length (within 1 %), a time twice. */
 Trajectory loadTumTrajectory(const std::filesystem::path& file,
                              const TrajectoryOptions& options = {});
 

@@ -109,8 +109,8 @@ void writeBinaryOcTree(std::ostream& out, const SemanticOcTree& map);
  * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */
 SemanticOcTree fromOcTree(const octomap::OcTree& map, const ClassTable& classes,
                           const FilterParameters& filter = {});
-/** An occupied leaf in exactly the color of a class is one in which a label of that class was seen;
- * its occupancy ends at the filter's limit for a class.
+/** In an occupied leaf of exactly a class's color a label of that class was seen; its occupancy
+ * ends at the filter's limit for a class.
  * \throw std::invalid_argument a map of another number of levels than 16, bad parameters. */
 SemanticOcTree fromOcTree(const octomap::ColorOcTree& map, const ClassTable& classes,
                           const FilterParameters& filter = {});

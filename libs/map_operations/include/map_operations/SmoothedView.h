@@ -9,9 +9,9 @@ namespace semantic_octree {
 /** How much the voxels around it tell about a voxel's class. */
 struct SmoothingOptions {
   /** Weight of what a voxel that shares a face tells, beside 1 for the voxel itself; none tells
-   * more than odds of 25. Straight borders between classes stay where they are whatever the weight;
-   * a single voxel that is as sure as four neighbors of another class keeps its class below 0.25.
-   * 0: each voxel for itself.
+   * more than odds of 25. Straight borders between classes stay whatever the weight. Below 0.25 a
+   * single voxel as sure as its four neighbors of another class keeps its class. 0: each voxel for
+   * itself.
    *
    * Voxels in which no label was seen are answered for by their 26 neighbors: those across an edge
    * with half the weight, those across a corner with a quarter. */
@@ -42,9 +42,8 @@ struct SmoothingOptions {
  *
  * A sum is right if neighbors err by themselves (repeated = 0), a mean if they all err alike
  * (repeated = 1). The map tells which it is: who learns more believes, in the mean, what was
- * believed before. So `repeated` is such that the class that a voxel by itself is surest of is as
- * likely with its neighbors as without them, in the mean over occupied voxels. Occupancy and status
- * are the voxel's own.
+ * believed before. So with this `repeated` a voxel's own surest class is as likely with neighbors
+ * as without, in the mean over occupied voxels. Occupancy and status are the voxel's own.
  *
  * For maps of voxels: in a leaf of a compressed map, which is larger, the same mixture would count
  * several times. The map must outlive the view, and is looked at once, when the view is made, for

@@ -65,8 +65,8 @@ struct ClassMap {
   std::string worldFile;  ///< the six lines of a .pgw
 };
 
-/** The map is at the left, whole pixels for each column of voxels in the exact color of the
- * likeliest class of its highest occupied leaf; the legend at the right.
+/** The map is at the left, the legend at the right. A column of voxels has whole pixels, in the
+ * exact color of its highest occupied leaf's likeliest class.
  * \param maxHeight leaves with their center above are not drawn, m; without: nothing is cut off,
  * except the ceiling of a map that lies under one
  * \param columnsAtOnce columns of voxels that are looked at together, some 30 bytes each; a row

@@ -88,8 +88,8 @@ class Abstraction {
   bool isExpanded(const SemanticOcTreeNode& node) const;
 
   /** Leaves of the compressed tree in OctoMap's order (depth first). Visits inner nodes that the
-   * tree expands, and its leaves. A leaf of the map that reaches above the blocks is told block by
-   * block, so that the map's pruning leaves no trace; everything that counts leaves counts one. */
+   * tree expands, and its leaves. A leaf of the map above the blocks is told block by block, so the
+   * map's pruning leaves no trace. Whatever counts leaves counts one. */
   std::vector<LeafCell> leaves() const;
   /** The leaves() that have voxels in a box, in the same order; visits nothing outside.
    * \param low, high keys of the box's lowest and highest voxels
@@ -129,8 +129,8 @@ class Abstraction {
     AddedToTree added;  ///< by expanding it
     double tau;         ///< see tree_abstraction::collapseAlphas()
   };
-  /** Calls visit(node) for all nodes but the free ones above the blocks, depth first; keeps some
-   * 262,144 of them in memory, or those below one root if that are more.
+  /** Calls visit(node) for all nodes but the free ones above the blocks, depth first. Some 262,144
+   * of them are in memory, or those below one root if these are more.
    * \return what the free nodes above the blocks add to a single leaf */
   AddedToTree forEachTau(const std::function<void(const NodeTau&)>& visit) const;
 
@@ -159,8 +159,8 @@ class Abstraction {
   GTree& m_gTree;
 };
 
-/** A reader of the leaves of a map's compressed tree, as MapFollower is one of its tiles: what is
- * said there of readers holds, and a new abstraction is told as everything.
+/** A reader of the leaves of a map's compressed tree, as MapFollower is one of its tiles, with the
+ * same rules. A new abstraction is told as everything.
  * \throw std::logic_error in all functions: the map is gone, broken, or keeps no G-values. */
 class LeafFollower {
  public:

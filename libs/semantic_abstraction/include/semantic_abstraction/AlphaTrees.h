@@ -8,7 +8,7 @@
 namespace semantic_octree {
 
 /** The compressed trees of all alphas, for one set of weights, of a map that may be larger than
- * memory: its nodes, counted by tau (see tree_abstraction::collapseAlphas()), in bins 0.2 % wide.
+ * memory. Its nodes are counted by tau (tree_abstraction::collapseAlphas()) in bins 0.2 % wide.
  *
  * Tree k expands the nodes of the first k bins. The trees between two of these are found by another
  * look at the nodes of one bin. */

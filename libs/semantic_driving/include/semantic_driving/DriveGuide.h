@@ -37,8 +37,8 @@ class DriveGuide {
   DriveGuide(const GuideOptions& options, semantic_planning::SemanticPlanner& planner,
              const mrpt::math::TPose2D& goal);
 
-  /** After the map changed and the planner was brought up to date: gives the controller another
-   * path if there is a reason to, an empty one if there is none at all.
+  /** After the map and the planner changed: gives the controller another path if there is a reason
+   * to, an empty one if there is none.
    * \param z height of the ground below the vehicle, meters \param seconds the time */
   void update(const DriveState& state, double z, DriveController& drive, double seconds);
 

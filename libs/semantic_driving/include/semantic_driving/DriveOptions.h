@@ -37,8 +37,8 @@ struct DriveOptions {
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
-  /** The vehicle drives tighter than the planner plans, or there is nothing left to correct with;
-   * obstacles are the centers of columns, so that half a voxel around them is not free.
+  /** The vehicle drives tighter than the planner plans, to have something left to correct with.
+   * Obstacles are the centers of columns, so half a voxel around them is not free.
    * \param plannedRadius VehicleOptions::turningRadius \param voxelSize both in meters */
   void setFor(double plannedRadius, double voxelSize);
   /** What stops are planned with, m/s^2. */

@@ -50,16 +50,15 @@ struct Exploration {
 };
 
 /** Places on drivable ground next to unknown space from which to see more of the way to a goal. The
- * most promising one comes first: least way there, where rank r counts r + 1 times, and on through
- * the unknown around all that is known to be in the way (the freespace assumption). Turning around
- * costs, too. (Yamauchi, "A frontier-based approach for autonomous exploration", 1997, with a
- * goal.)
+ * most promising comes first: least way there, where rank r counts r + 1 times, and on through the
+ * unknown around known obstacles (the freespace assumption). Turning around costs, too. (Yamauchi,
+ * "A frontier-based approach for autonomous exploration", 1997, with a goal.)
  *
- * Only what borders on the goal's region counts: a flood from the goal over all that is not known
- * to be in the way, up to where the vehicle can get. A way to the goal leaves the known ground for
- * the last time at that border. If nothing reached borders on the region, it is enclosed: what is
- * in the way stays there, so that nothing that is yet to be seen opens a way. Gaps count as
- * passable in doubt, as does all that is farther than the radius.
+ * Only what borders on the goal's region counts. That is a flood from the goal, over all but known
+ * obstacles, up to where the vehicle can get. A way to the goal leaves the known ground for the
+ * last time at that border. If nothing reached borders on the region, it is enclosed: what is in
+ * the way stays, and nothing yet to be seen opens a way. Gaps count as passable in doubt, as does
+ * all that is farther than the radius.
  * \param from where the vehicle is and heads, on ground of height z (meters)
  * \param avoid places that are not looked for again, nor others within 3 m of them
  * \param effort until now: a meter through the unknown counts two on rank 0, times its doubt()
@@ -69,8 +68,8 @@ Exploration findFrontiers(const semantic_planning::SemanticPlanner& planner,
                           const mrpt::math::TPose2D& goal,
                           const std::vector<mrpt::math::TPose2D>& avoid, const Effort& effort = {});
 
-/** Chooses places at the border of what is known to drive to, each once, and keeps account of what
- * that costs: where ways through the unknown were hoped for in vain, it hopes for less. */
+/** Chooses places at the border of the known to drive to, each once. Where ways through the unknown
+ * were hoped for in vain, it hopes for less. */
 class Explorer {
  public:
   /** \param planner must outlive this. */

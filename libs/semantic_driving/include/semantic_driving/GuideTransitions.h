@@ -25,8 +25,8 @@ struct GuideOptions {
   void validate() const;
 };
 
-/** Where a path leads: nowhere, as there is none; to the goal; to a place from which to see more;
- * out of where the vehicle must not be; back along its own track. */
+/** Where a path leads: nowhere (there is none), to the goal, to where to see more, out of where the
+ * vehicle must not be, back along its own track. */
 enum class Target { None, Goal, Frontier, Recovery, Back };
 const strict_files::Choices<Target>& choicesOf(Target);
 /** "none", "goal", "frontier", "recovery" or "back". */

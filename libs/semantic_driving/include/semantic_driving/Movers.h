@@ -53,8 +53,8 @@ class MoverTracker {
   /** The scan is complete. \param seconds when it was taken */
   void update(double seconds);
 
-  /** A scan without those who walk, or were seen for the first time just now: what is left of them
-   * is soon somewhere else, and may be where no sensor sees it again. Who stands stays.
+  /** A scan without those who walk, or were seen for the first time just now. They are soon
+   * somewhere else, and may be left in the map where no sensor looks again. Who stands stays.
    * \param T_map_sensor where the scan was taken, at the last update() */
   semantic_types::LabeledCloud withoutPassing(const semantic_types::LabeledCloud& cloud,
                                               const Eigen::Isometry3d& T_map_sensor) const;

@@ -82,9 +82,9 @@ struct GoalMisfit {
   semantic_types::ClassId classId = semantic_types::kNoClass;  ///< of what is there
 };
 
-/** What is known to be in the way of a vehicle at a goal, or its clearance, nearest to the goal
- * first; nothing if there is nothing, or too little is known. As SemanticPlanner::check() does, but
- * for what is not known: that may turn out to be ground.
+/** What is known to be in the way of a vehicle at a goal, or of its clearance, nearest first; empty
+ * if there is nothing, or too little is known. As SemanticPlanner::check() does, but for what is
+ * not known: that may turn out to be ground.
  *
  * Heights of the ground spread from below the vehicle. Beyond ground that was not seen they are
  * guessed, so that only what stands next to ground that was seen counts.

@@ -11,9 +11,9 @@
 
 namespace semantic_driving {
 
-/** A robot as MRPT's navigators see it (CReactiveNavigationSystem and others): before each of their
- * steps it is told where it is and what is in the way, afterwards it has the command. For a robot
- * of your own, derive from it or tell it what your sensors say. */
+/** A robot as MRPT's navigators see it (CReactiveNavigationSystem and others). Before each step it
+ * is told where it is and what is in the way, afterwards it has the command. For a robot of your
+ * own, derive from it or tell it what your sensors say. */
 class RobotInterface : public mrpt::nav::CRobot2NavInterface {
  public:
   DriveState state;          ///< in the map's frame

@@ -28,7 +28,7 @@ struct ExploreOptions {
   /** Where views may be, map frame, meters; empty: everywhere. */
   Eigen::AlignedBox2d area;
   /** Exploring ends when what is left within reach is expected to tell less than this share of all
-   * that is known and left: as much as the last stretch of the way that promised as much. */
+   * that is known and left. */
   double leftShare = 0.03;
 
   void describe(strict_files::OptionList& list);
@@ -55,12 +55,12 @@ class ViewStrategy {
   virtual void done(const View& view) = 0;
   /** A sentence for people, when it is over. */
   virtual std::string conclusion() const = 0;
-  /** What the look that promised most in the last call of next() is expected to add to a compressed
-   * tree's objective by the weights (GainField::growth()): nats summed over voxels, 0 unless it is
-   * predicted. The map has to be as it was. */
+  /** What the most promising look of the last call of next() adds to a compressed tree's objective
+   * (GainField::growth()), nats summed over voxels; 0 unless it is predicted. The map has to be as
+   * it was. */
   virtual view_information::Bounds growth() const { return {}; }
-  /** What a look from a pose on ground of height z is expected to tell, by the map as it was in the
-   * last call of next(), nats; 0 unless it is predicted. */
+  /** What a look from a pose on ground of height z is expected to tell, by the map of the last call
+   * of next(), nats; 0 unless it is predicted. */
   virtual double promise(const mrpt::math::TPose2D&, double) { return 0; }
   /** What looking at a column of the map (keys) may still tell, nats; 0 unless it is
    * predicted. */

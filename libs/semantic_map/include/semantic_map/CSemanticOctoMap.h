@@ -79,9 +79,9 @@ struct InsertionResult {
  *
  * Reading, drawing and likelihoods are safe from several threads at a time; all else is not.
  *
- * A map may be in a folder of tiles (TFolderOptions, openFolder()), and larger than memory: what an
- * observation or a question needs comes in, and goes out by least use. It answers as a map in
- * memory does, to the last bit. But
+ * A map may be in a folder of tiles (TFolderOptions, openFolder()), and larger than memory. What an
+ * observation or a question needs comes in, and leaves by least use. It answers as a map in memory
+ * does, to the last bit. But
  * - it is saved by saveMetricMapRepresentationToFile() or folder()->save(), and not when it is
  * gone;
  * - one map writes into a folder: another one, of this process or another, is refused;

@@ -29,8 +29,8 @@ struct ClassVotes {
  * classes.
  *
  * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k. Then, if the likeliest class
- * is above its limit, all are lowered by the excess: clamping one by one would make equal what is
- * not, where hits raise all of them. Each is clamped from below.
+ * is above its limit, all are lowered by the excess. Clamping one by one would make equal what is
+ * not. Each is clamped from below.
  *
  * A class seen for the first time begins with the rest's value. If more than `Named` classes are
  * named, the least likely one (largest id on a tie) joins the rest. The rest's value becomes the

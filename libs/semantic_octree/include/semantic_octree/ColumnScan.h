@@ -62,8 +62,8 @@ struct ColumnTile {
   /** Whether what is at height `low` is a ghost. Then more than one scan saw what is above `high`,
    * where there is ground. Of the space between, the map saw less than half, and nothing surely. */
   bool isGhost(int column, int low, int high) const;
-  /** Bottom of the lowest run that is no ghost under the next run, or under sure space that begins
-   * more than `margin` above; kNumKeys if there is none. */
+  /** Bottom of the lowest run that is no ghost under the next one, or under sure space from more
+   * than `margin` above; else kNumKeys. */
   int floorOf(int column, int margin) const;
 
  private:

@@ -34,9 +34,8 @@ struct Calibration {
  * are added, so that occupancy follows the binary Bayes filter. */
 struct FilterParameters {
   /** Share of labels that name the true class, (1/K, 1). Of scans whose labels disagree in cells
-   * more than that allows, it is less (LabelAgreement). Labels of annotated data are right in 98 to
-   * 99 of 100, those of segmentation networks in 90 to 95 where these do well: the default lies
-   * between. */
+   * more than that allows, it is less (LabelAgreement). Annotated labels are right in 98 to 99 of
+   * 100, those of good segmentation networks in 90 to 95. The default lies between. */
   double accuracy = 0.93;
   /** Largest correlation of any two labels of one scan in one cell, given the cell's class, [0, 1].
    * 0: each counts by itself, 1: many that agree say no more than one. What errs about a surface

@@ -26,10 +26,10 @@ class LabelAgreement {
   /** The labels of one cell. \param begin, end in ascending order */
   void add(const semantic_types::ClassId* begin, const semantic_types::ClassId* end);
 
-  /** The largest correlation and accuracy, up to those of the parameters, with which labels would
-   * agree as these did; where they agree less than with a correlation of 0.02, the accuracy that
-   * leads to that. Agreement is taken in steps of 1/64, so that scans that are alike are trusted
-   * alike, and the parameters count like another thousand labels.
+  /** The largest correlation and accuracy, up to the parameters', with which labels would agree as
+   * these did. Where they agree less than with a correlation of 0.02, the accuracy that leads to
+   * that. Agreement is taken in steps of 1/64, so that scans that are alike are trusted alike, and
+   * the parameters count like another thousand labels.
    * \param numClasses K; with one, or published constants, the answer is the parameters' */
   LabelReliability explain(const FilterParameters& parameters, int numClasses) const;
 

@@ -22,10 +22,10 @@ struct TileChange {
  *     for (const auto& tile : follower.tiles().tiles) ...  // since the last call
  *
  * A map has any number of readers, and none sees less because of another. Insertions, aging, and
- * corrections (KeyframeMap) are told as what changed. A reader is told everything, with `all` set,
- * at its first look, after clear(), and after the map took another one's content (assignment, swap,
- * a folder, a map that was filled). So is one that has fallen behind: a map keeps at most 2^20
- * changes, 8 bytes each, and nothing of what nobody has looked at yet.
+ * corrections (KeyframeMap) are told as what changed. A reader is told everything, with `all` set:
+ * at its first look, after clear(), and after the map took another's content (assignment, swap, a
+ * folder, filling). So is one that has fallen behind: a map keeps at most 2^20 changes, 8 bytes
+ * each, and nothing of what nobody has looked at yet.
  *
  * A reader follows the object, wherever its content comes from; copies of a map have no readers.
  * Not thread safe: the map must not change during a call. \throw std::logic_error in all functions:

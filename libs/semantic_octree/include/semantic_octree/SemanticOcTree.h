@@ -54,8 +54,8 @@ struct RayHit {
  * except for reading from several threads.
  *
  * Functions that fail leave the map as it was. Only insert() and age() may lose it: if memory runs
- * out halfway, all that is left is a broken map, of which every function throws std::logic_error
- * until clear(). MapFolder keeps parts of a map on disk. */
+ * out halfway, a broken map is left, whose functions throw std::logic_error until clear().
+ * MapFolder keeps parts of a map on disk. */
 class SemanticOcTree {
  public:
   using Node = SemanticOcTreeNode;

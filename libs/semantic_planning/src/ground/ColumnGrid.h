@@ -11,8 +11,8 @@
 
 namespace semantic_planning {
 
-/** In the order in which the octree has them: of a map in a folder of tiles, each tile then comes
- * in a few times at most, and not once for each row of columns. */
+/** In the octree's order. So each tile of a map in a folder comes in a few times at most, and not
+ * once for each row of columns. */
 inline std::vector<Column> inMortonOrder(std::vector<Column> tiles) {
   const auto isBefore = [](const Column& l, const Column& r) {
     const unsigned x = static_cast<unsigned>(l.x ^ r.x), y = static_cast<unsigned>(l.y ^ r.y);

@@ -15,9 +15,9 @@ using ScanGrid = ColumnGrid<ColumnTile>;
 /** Columns around one that tell what class it has. */
 constexpr int kReachOfClasses = 2;
 
-/** Top voxels with enough free space above. One of a forbidden class has the class of most around
- * it that it can be driven to, if these are more than the forbidden ones: single wrong labels close
- * no road. */
+/** Top voxels with enough free space above. One of a forbidden class takes the class of most
+ * drivable ones around it, if these are more than the forbidden: single wrong labels close no
+ * road. */
 SurfaceTile measuredSurfaces(const ScanGrid& columns, Column tile, const GroundShape& shape);
 
 /** Directions of gap fills; the opposite ones are the same fills from their other ends. */

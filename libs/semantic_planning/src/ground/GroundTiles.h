@@ -18,8 +18,8 @@ inline int reachOfGround(const GroundShape& shape) {
   return kReachOfClasses + reachOfGapFills(shape) + shape.baseline + 1 + shape.largestClearance;
 }
 
-/** The stages from the map to the ground, each tile by tile; what a column becomes depends only on
- * the stage before within a fixed distance, and tiles are computed again only if that changed.
+/** The stages from the map to the ground, each tile by tile. A column follows from the stage before
+ * within a fixed distance; tiles are computed again only if that changed.
  *
  * The stages before the surfaces take more memory than these. They are kept around what changed of
  * late, and made again elsewhere when something changes there. */

@@ -14,8 +14,8 @@ class OpenGround::Square {
   explicit Square(int edge) : m_edge(edge), m_numbers(static_cast<std::size_t>(edge * edge)) {}
   std::uint8_t* row(int y) { return m_numbers.data() + y * m_edge; }
 
-  /** Replaces each number by that which better(l, r) chooses of those within some columns along x
-   * and y; what is nearer to the border than that is none of these. */
+  /** Replaces each number by the one that better(l, r) chooses within some columns along x and y,
+   * except nearer to the border than that. */
   template <class Better>
   void spread(int reach, Better better) {
     for (const int stride : {1, m_edge})

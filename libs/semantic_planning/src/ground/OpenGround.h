@@ -8,9 +8,9 @@
 
 namespace semantic_planning {
 
-/** Where a vehicle is free whatever its heading, and where its wheels are over one class: there its
- * discs and wheels need not be looked at one by one. Found tile by tile when it is asked for, and
- * kept: for as long as the ground stays as it is. */
+/** Where a vehicle is free at any heading, and its wheels are over one class. There its discs and
+ * wheels need no look one by one. Found tile by tile when it is asked for, and kept: for as long as
+ * the ground stays as it is. */
 class OpenGround {
  public:
   /** By how many columns an origin is away, along x or y, from the nearest one where that does not

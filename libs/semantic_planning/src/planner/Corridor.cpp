@@ -40,8 +40,8 @@ bool isAtBorder(Column c) {
   return x == 0 || y == 0 || x == kTileEdge - 1 || y == kTileEdge - 1;
 }
 
-/** A part of a tile's ground: where the middle of a vehicle gets without leaving the tile, which
- * keeps the clearance that the smallest disc of its footprint needs. */
+/** A part of a tile's ground: where a vehicle's middle gets within the tile, with the clearance
+ * that its footprint's smallest disc needs. */
 using Id = std::pair<Column, std::uint16_t>;  ///< the tile, and which of its parts
 
 struct Part {
@@ -145,8 +145,8 @@ class CorridorSearch {
     return parts;
   }
 
-  /** With a ring of tiles around it, for what is next to its parts: there they have the numbers
-   * that the next square gives them, for it finds the same ground. */
+  /** With a ring of tiles around it, for what is next to its parts. The next square finds the same
+   * ground there, and so the same numbers. */
   void makeSquare(Column square) {
     if (m_madeSquares.find(square)) return;
     const Column low{square.x * kSquareEdge, square.y * kSquareEdge};

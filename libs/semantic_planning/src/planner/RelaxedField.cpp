@@ -15,8 +15,8 @@ namespace {
 
 using Cost = RelaxedField::Cost;
 
-/** Columns of a step that is no longer than what the smallest disc keeps free around it: where the
- * vehicle fits at both ends there is little room for anything between. */
+/** Columns of a step that is no longer than what the smallest disc keeps free: where the vehicle
+ * fits at both ends, little can be between. */
 int strideOf(const CollisionChecker& checker) {
   int needed2 = std::numeric_limits<int>::max();
   for (const auto& disc : checker.discs()) needed2 = std::min(needed2, disc.needed2);

@@ -217,8 +217,8 @@ class CostField {
     return std::max(std::abs(c.x - m_center.x), std::abs(c.y - m_center.y)) <= m_reach;
   }
 
-  /** Surface::clearance2 that the vehicle's origin needs at the least, however it stands: what each
-   * disc needs, less its distance from the origin and what two columns round off. */
+  /** Surface::clearance2 that the vehicle's origin needs at any heading: each disc's, less its
+   * distance from the origin and the rounding of two columns. */
   static int roomAround(const CollisionChecker& checker) {
     const double voxel = checker.ground().voxelSize();
     double room = 0;

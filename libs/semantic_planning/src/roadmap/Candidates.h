@@ -75,8 +75,8 @@ std::vector<CandidatePoint> compressedPoints(Column tile,
                                              const semantic_octree::Abstraction& abstraction,
                                              const Ground& ground, const RoadmapOptions& options);
 
-/** A point's poses: two in the directions in which the free space around of its class and better
- * ones runs, or one in a direction that looks random (of leaves as published). */
+/** A point's poses: two along the free space around of its class and better ones, or one in a
+ * direction that looks random (of leaves as published). */
 std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const CollisionChecker& checker,
                                      const RoadmapOptions& options);
 

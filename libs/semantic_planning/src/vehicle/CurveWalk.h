@@ -79,10 +79,10 @@ class SegmentWalk {
   const double m_gear, m_radius;  ///< radius: positive to the left, 0: straight
 };
 
-/** Goes along a curve: atMiddle(placement, pieces left) in the middle of as many pieces, all as
- * long as each other, and atEnd(placement) where its segments end; until one of them returns false:
- * then false. atMiddle returns how many pieces to go on by, see SegmentWalk::visit(). Computes
- * sines for segments, not for pieces. */
+/** Goes along a curve. It calls atMiddle(placement, pieces left) in the middle of pieces of one
+ * length, and atEnd(placement) where segments end. The first false ends it. atMiddle returns how
+ * many pieces to go on by, see SegmentWalk::visit(). Computes sines for segments, not for
+ * pieces. */
 template <class AtMiddle, class AtEnd>
 bool walkCurve(const ReedsSheppCurve& curve, int pieces, AtMiddle atMiddle, AtEnd atEnd) {
   const double piece = curve.length() / pieces;

@@ -29,8 +29,8 @@ double wrappedQuickly(double angle) { return angle - 2 * kPi * std::nearbyint(an
 double arc(double angle) { return std::abs(kPi - std::abs(kPi - std::abs(angle))); }
 
 /** The goal seen from the start's position and the heading half-way between both headings. There a
- * shortest length is even in x, in y and in `half`: a curve can be driven in the other gear,
- * reflected, or taken from its end, which negate x and half, y and half, or y. */
+ * shortest length is even in x, in y and in `half`. For a curve can be driven in the other gear (x
+ * and half are negated), reflected (y and half), or taken from its end (y). */
 struct Goal {
   Goal(const TPose2D& from, const TPose2D& to) {
     const double turns = std::nearbyint((to.phi - from.phi) / (2 * kPi));

@@ -33,14 +33,14 @@ struct MapperOptions {
 };
 
 /** Keeps a robot's map and where the robot is in it. Scans are registered to keyframes that do not
- * change, not to the map that is made of them: what a pose is wrong by does not come back as
- * evidence for it. What the map states is calibrated (Calibrator) by the labels until 4, 8, 16 ...
- * scans, and until keyframes move. It starts one thread, which finds this out; the map states so
- * from the next of these times on, on slow machines as on fast ones, and from finish() on. */
+ * change, not to the map made of them. So a pose's error does not come back as evidence for it.
+ * What the map states is calibrated (Calibrator) by the labels until 4, 8, 16 ... scans, and until
+ * keyframes move. One thread finds this out. The map states so from the next of these times on, on
+ * slow machines as on fast ones, and from finish() on. */
 class Mapper {
  public:
-  /** With `localize`, an empty map must be changed by the mapper alone (but for its abstraction),
-   * and follows when poses move; one with content is not moved, and poses are in its frame.
+  /** With `localize`, the mapper alone may change an empty map (but for its abstraction), which
+   * follows when poses move. One with content is not moved, and poses are in its frame.
    * \param map must outlive the mapper \param reference another map in whose frame poses are to
    * be, see Slam; not needed afterwards
    * \throw std::invalid_argument bad options \throw std::runtime_error as KeyframeMap. */

@@ -72,9 +72,9 @@ class Slam {
   ~Slam();
   Slam(Slam&&) noexcept;
 
-  /** Brings the trajectory into the frame of a map that is there already: the first keyframe and,
-   * as with loops, each few meters another one are registered to it, too. Odometry begins within
-   * some meters of where the robot is in it. The map is not needed afterwards.
+  /** Brings the trajectory into the frame of an existing map: the first keyframe and, as with
+   * loops, another each few meters are registered to it, too. Odometry begins within some meters of
+   * where the robot is in it. The map is not needed afterwards.
    * \throw std::logic_error scans were added. */
   void setReference(const semantic_octree::SemanticOcTree& map);
 

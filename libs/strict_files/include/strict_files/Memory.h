@@ -14,10 +14,10 @@ class PieceTooLarge : public std::bad_alloc {
   }
 };
 
-/** While one lives, its thread gets only memory that it allows, and no single piece of more than 1
- * GiB, in programs whose operator new asks isAllowed(), as those of this project do. For what
- * others read from files that may be damaged: they make room for as many elements as a file says it
- * has. One at a time. */
+/** While one lives, its thread gets only memory that it allows, and no piece of more than 1 GiB.
+ * Programs' operator new asks isAllowed() for that, as in this project. For what others read from
+ * files that may be damaged: they make room for as many elements as a file says it has. One at a
+ * time. */
 class AllocationLimit {
  public:
   static constexpr std::size_t kMost = std::size_t{1} << 30;  ///< bytes

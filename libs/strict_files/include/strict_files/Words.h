@@ -15,8 +15,8 @@ namespace strict_files {
  * apart, so MRPT's maxRange names max_range. */
 bool sameWord(const std::string& a, const std::string& b);
 
-/** What to say of a word that is none of the known ones: "unknown key 'max_rnge'; did you mean
- * 'max_range'?", or all that are known where none is near (by edit distance).
+/** What to say of an unknown word: "unknown key 'max_rnge'; did you mean 'max_range'?", or all
+ * known ones where none is near (by edit distance).
  * \param kind what it is: "key" */
 std::string unknownWord(const std::string& kind, const std::string& word,
                         const std::vector<std::string>& known);
@@ -38,9 +38,9 @@ std::string trimmed(const std::string& text);
 /** "a, b, c" */
 std::string joined(const std::vector<std::string>& words);
 
-/** What an exception says, without the call stack that MRPT appends to the text of its own, and
- * without those of the exceptions that it was passed on as. Outputs that are not complete (see
- * OutputFiles.h) have the names that they would have got. */
+/** What an exception says, without the call stacks that MRPT appends, its own and those of
+ * exceptions that it was passed on as. Outputs that are not complete (see OutputFiles.h) have the
+ * names that they would have got. */
 inline std::string messageOf(const std::exception& e) {
   if (dynamic_cast<const PieceTooLarge*>(&e)) return e.what();
   if (dynamic_cast<const std::bad_alloc*>(&e)) return "more memory is needed than there is";

@@ -70,11 +70,11 @@ class UniformPrior : public UnknownPrior {
 /** P(free) = 1/2, the classes equally likely: what the filter has of unknown space. */
 std::vector<double> nothingKnown(int numClasses);
 
-/** Learned from what is known: ground goes on as it is near by, or else as it is on the whole; what
- * stands on it is what stands on such ground elsewhere; above is air. It says which outcomes to
- * expect. What they are worth is how far they move what is expected (Question::surprise()). On the
- * ground that is nothing yet, so that ground that is relevant for sure is worth most. Above it that
- * is what is there on the whole: air is worth nothing. */
+/** Learned from what is known. Ground goes on as near by, or else as on the whole. On it stands
+ * what stands on such ground elsewhere; above is air. It says which outcomes to expect. What they
+ * are worth is how far they move what is expected (Question::surprise()). On the ground that is
+ * nothing yet, so that ground that is relevant for sure is worth most. Above it that is what is
+ * there on the whole: air is worth nothing. */
 class LearnedPrior : public UnknownPrior {
  public:
   /** \param map must outlive this. */

@@ -45,7 +45,7 @@ class BlockUpdate final : public BlockFusion {
 
  private:
   /** Octants that are leaves with a record, and are not seen free as a whole, get a record for each
-   * voxel; voxels that are hit with a label get one. */
+   * voxel. So do voxels that are hit with a label. */
   void makeRoomForRecords(Block& block, const BlockScan& scan);
   void hit(Block& block, const BlockScan& scan);
   void hitVoxel(Block& block, int voxel, bool isNew, std::uint32_t rank, const HitVotes& votes);

@@ -6,7 +6,7 @@
 namespace semantic_octree {
 
 /** Keeps something of each inner node of a map (see NodeStore::state()), which follows from what is
- * below the node alone: whatever changes nodes has it computed anew, from the leaves up.
+ * below alone. Whatever changes nodes has it computed anew, from the leaves up.
  *
  * The map owns it. A new node's bytes are 0. */
 class NodeObserver {

@@ -58,8 +58,8 @@ struct Octant {
   Slot slots[8];
 };
 
-/** All that is below an inner node at depth 14: 4 x 4 x 4 voxels in Morton order (x lowest), so
- * that eight in a row are an octant, one of the block's children. */
+/** All that is below an inner node at depth 14: 4 x 4 x 4 voxels in Morton order (x lowest). Eight
+ * in a row are an octant, one of the block's children. */
 struct Block {
   static constexpr int kDepth = 14;
 

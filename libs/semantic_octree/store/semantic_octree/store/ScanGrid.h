@@ -183,8 +183,8 @@ class ScanGrid {
 /** Bits set in some words. */
 unsigned countBits(const std::uint64_t* words, int numWords);
 
-/** Sets the bits of the voxels that rays from one point pass, with the first one and without those
- * in which they end (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing").
+/** Sets the bits of the voxels that rays from one point pass, with the first and without the last
+ * (Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing").
  * \param begin, ends voxel units relative to the grid, inside it */
 void markRays(ScanGrid& grid, const Eigen::Array3d& begin, const Eigen::Array3d* ends,
               std::size_t numRays);

@@ -10,9 +10,9 @@ namespace semantic_octree {
 
 /** Fills an empty map from the top.
  *
- * A cursor stands for a cube of the new map: `bool known()`, whether anything may be known in it,
- * asked first; `bool isLeaf()`, whether all of it is alike; `LeafContent content()` if so;
- * `Cursor child(int i)`, which must also work for cubes that are leaves. */
+ * A cursor stands for a cube of the new map. `bool known()` is asked first: whether anything may be
+ * known in it. `bool isLeaf()` says whether all of it is alike, `LeafContent content()` then how.
+ * `Cursor child(int i)` must also work for cubes that are leaves. */
 class TreeBuilder {
  public:
   /** Children that agree. */

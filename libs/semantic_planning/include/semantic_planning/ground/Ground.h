@@ -26,15 +26,15 @@ struct GroundPoint {
  *
  * A surface is an occupied voxel with the vehicle's height free of occupied voxels above it; holes
  * between surfaces are filled (GroundOptions). Neighboring surfaces are connected if they differ
- * by at most the step height. Everything is a function of the map alone: after update() the ground
- * is the same as if it were read anew, and so are its classes and distances. Only what somebody
- * knows better (assume()) comes on top. */
+ * by at most the step height. Everything is a function of the map alone: after update() ground,
+ * classes and distances are as if read anew. Only what somebody knows better (assume()) comes on
+ * top. */
 class Ground {
  public:
   /** \param map must outlive the ground.
    * \param order its classes are the map's ids, with semantic_types::kNoClass for unknown ground.
-   * \param within tiles (of kTileEdge x kTileEdge columns) in which there is ground; it is there
-   * what it is without this limit, and no more of the map is read than that takes. Without: all.
+   * \param within tiles (of kTileEdge x kTileEdge columns) in which there is ground. There it is
+   * what it is without this limit, and little more of the map is read. Without: all.
    * \throw std::invalid_argument bad options, or an order of other classes. */
   Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
          const GroundOptions& options, const colored_graph::ClassOrder& order,
@@ -77,9 +77,9 @@ class Ground {
   int step() const { return m_step; }
   /** Largest distance in voxels that surfaces know (Surface::clearance2). */
   int largestClearance() const { return m_largestClearance; }
-  /** Whether a disc of this radius (meters) has the vehicle's clearance, wherever in the surface's
-   * column its center is: from walls, steps, steep and perhaps forbidden ground, and from what is
-   * not known to be ground. */
+  /** Whether a disc of this radius (m) has the vehicle's clearance, wherever in the surface's
+   * column its center is. It counts from walls, steps, steep and perhaps forbidden ground, and the
+   * unknown. */
   bool hasClearance(const Surface& surface, double radius) const {
     const double needed = (radius + m_clearance) / m_voxelSize;
     return surface.drivable && surface.clearance2 >= needed * needed;

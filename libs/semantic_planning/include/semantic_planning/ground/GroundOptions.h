@@ -5,10 +5,10 @@ namespace semantic_planning {
 
 /** How the ground is read from the map. */
 struct GroundOptions {
-  /** Holes in the ground up to this wide (meters) are filled with the class of the nearer border:
-   * between the rings of a LiDAR, and where grazing beams eroded a voxel. A hole is filled along
-   * lines between two of its borders. Their slope must be drivable, nothing may stand in the way,
-   * and the map must not have seen free space below. */
+  /** Holes in the ground up to this wide (m) get the class of the nearer border: between a LiDAR's
+   * rings, and where grazing beams eroded a voxel. A hole is filled along lines between two of its
+   * borders. Their slope must be drivable, nothing may stand in the way, and the map must not have
+   * seen free space below. */
   double fillGap = 0.8;
   /** Wider holes up to this (meters) are filled too: the vehicle's own shadow at the start, what
    * parked cars hid. Between borders of one

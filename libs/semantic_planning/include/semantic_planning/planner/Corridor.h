@@ -31,14 +31,14 @@ struct CorridorTask {
 };
 
 /** Finds the least way through the worst class, then through the next better one, and so on, from
- * one tile of ground to the next. In each tile parts are told apart between which a vehicle that
- * can turn on the spot does not get within the tile; one has the best class that is there from one
- * side to the other. The ground is made square by square (512 columns a side) when the search comes
+ * one tile of ground to the next. Parts of a tile are apart if a vehicle that turns on the spot
+ * does not get from one to the other within the tile. A part has the best class that is there from
+ * side to side. The ground is made square by square (512 columns a side) when the search comes
  * there, and forgotten but for its parts. So little more than a square of a map in tiles is needed
  * at a time.
  *
- * If there is no way, or if start or goal are not on drivable ground, the corridor is around these
- * two; a plan in it says what is the matter.
+ * Without a way, or with start or goal off drivable ground, the corridor is around these two. A
+ * plan in it says what is the matter.
  * \throw std::invalid_argument a number is not finite, bad options, or an order of other classes
  * \throw std::runtime_error naming the file of a tile that cannot be read, of a map in a folder */
 Corridor findCorridor(const semantic_octree::SemanticOcTree& map,

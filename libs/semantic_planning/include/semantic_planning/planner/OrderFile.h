@@ -21,13 +21,13 @@ constexpr const char* kUnknownGround = "unknown";
  *
  * \return over the map's class ids 0..K, 0 = unknown ground.
  * \throw std::runtime_error naming file, line and value: unreadable, YAML syntax, unknown or
- * repeated key, a class that the table does not have or that is named twice, more than 16 ranks,
- * rates that ClassOrder::withRates() refuses. */
+ * repeated key, a class that is unknown or named twice, more than 16 ranks, rates that
+ * ClassOrder::withRates() refuses. */
 colored_graph::ClassOrder loadClassOrder(const std::filesystem::path& file,
                                          const semantic_types::ClassTable& classes);
 
-/** A compressed tree for planning with this order (over the map's class ids, 0 = unknown ground):
- * it keeps what tells the ranks apart, each from the others and from all that is forbidden. */
+/** A compressed tree for planning with this order over the map's class ids, 0 = unknown ground. It
+ * tells the ranks apart, from each other and from what is forbidden. */
 semantic_octree::AbstractionOptions abstractionFor(const colored_graph::ClassOrder& order);
 
 }  // namespace semantic_planning

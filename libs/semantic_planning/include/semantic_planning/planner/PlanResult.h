@@ -37,12 +37,12 @@ using StageTimes = std::vector<std::pair<std::string, double>>;
 struct PlanResult {
   PlanStatus status = PlanStatus::NotConnected;
   std::string reason;  ///< a sentence with the numbers; empty if found
-  /** Where something is in the way: of the start or goal, if that is refused, or where what can be
-   * reached comes nearest to the goal; map frame, meters. */
+  /** Where something is in the way of a refused start or goal, or where what can be reached comes
+   * nearest to the goal; m, map frame. */
   std::optional<mrpt::math::TPoint2D> obstacle;
-  /** Worst rank first: one number for each rank but rank 0, then the price of driving (MotionCost),
-   * then the total length, in colored_graph's units (0.1 mm) or edges. A roadmap's motion cost
-   * leaves out what changes where edges meet. */
+  /** Worst rank first: a number for each rank but rank 0, the price of driving (MotionCost), the
+   * total length, in colored_graph's units (0.1 mm) or edges. A roadmap's motion cost leaves out
+   * what changes where edges meet. */
   std::vector<std::int64_t> cost;
   /** Meters: MotionCost, and each rank's rate (ClassOrder) for each of its meters. An infinite rate
    * counts as a large one. */

@@ -52,12 +52,11 @@ class PlannerCore;
  *     }
  *
  * A plan to another goal makes a roadmap of its own. What does not depend on start and goal is kept
- * for the next plan until the map changes there: points for vertices, but not in a corridor, where
- * memory is short. Answers are those of a new planner. One that runs out of memory, or whose
- * `cancelled` throws, is broken: all further calls throw std::logic_error. Not thread safe. While a
- * call reads the map, another thread that changes it gets std::logic_error, and the other way round
- * (ReadLock). A map may have any number of planners, and other readers of its changes
- * (MapFollower). */
+ * until the map changes there: points for vertices, but not in a corridor, where memory is short.
+ * Answers are those of a new planner. One that runs out of memory, or whose `cancelled` throws, is
+ * broken: all further calls throw std::logic_error. Not thread safe. While a call reads the map,
+ * another thread that changes it gets std::logic_error, and the other way round (ReadLock). A map
+ * may have any number of planners, and other readers of its changes (MapFollower). */
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a roadmap of the tree (isOfTree) it has to keep
@@ -77,8 +76,8 @@ class SemanticPlanner {
   PlanResult plan(const mrpt::math::TPose2D& start, const mrpt::math::TPose2D& goal,
                   std::optional<double> startZ = {}, std::optional<double> goalZ = {});
 
-  /** Brings ground and roadmap up to date with the map: leaves of the compressed tree that came or
-   * went insert or remove vertices, and edges over ground that changed are looked at again. */
+  /** Brings ground and roadmap up to date with the map. Leaves of the compressed tree that came or
+   * went change vertices; edges over changed ground are looked at again. */
   UpdateResult update();
 
   /** The best path now, from where the vehicle is, to the same goal. What it has of a path is kept
@@ -87,10 +86,10 @@ class SemanticPlanner {
   PlanResult replan(const mrpt::math::TPose2D& start, std::optional<double> startZ = {});
 
   /** plan(), and replan() without a goal, in slices: for those who have other things to do
-   * meanwhile, as a vehicle that drives. Between slices map and planner may be updated; the search
-   * goes on over the ground as it was when it began, and begins anew if something is on the path
-   * that it finds. Where a roadmap is used, all of it is done when it begins. plan(), replan() and
-   * forget() give up what was begun. \throw as plan() and replan() */
+   * meanwhile, as a vehicle that drives. Between slices map and planner may be updated. The search
+   * goes on over the ground as it was, and begins anew if something is on the path that it finds.
+   * Where a roadmap is used, all of it is done when it begins. plan(), replan() and forget() give
+   * up what was begun. \throw as plan() and replan() */
   void begin(const mrpt::math::TPose2D& start, const std::optional<mrpt::math::TPose2D>& goal,
              std::optional<double> startZ = {}, std::optional<double> goalZ = {});
   /** \param work how much may be done, about as many columns of ground or 0.3 us each on one core

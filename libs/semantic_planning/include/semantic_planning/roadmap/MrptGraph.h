@@ -17,8 +17,8 @@ using ClassNetwork =
     mrpt::graphs::CNetworkOfPoses<mrpt::poses::CPose2D, mrpt::containers::map_traits_stdmap,
                                   VertexClass>;
 
-/** A roadmap as MRPT knows graphs: nodes with their global poses and classes, and for each usable
- * or unevaluated edge the pose of its end as seen from its start. saveToTextFile() writes a .graph
+/** A roadmap as MRPT knows graphs. Nodes have their global poses and classes; each usable or
+ * unevaluated edge has the pose of its end as seen from its start. saveToTextFile() writes a .graph
  * file, which CNetworkOfPoses2D and MRPT's applications read.
  * \param classNames by class id. */
 ClassNetwork toNetwork(const Roadmap& roadmap, const std::vector<std::string>& classNames);

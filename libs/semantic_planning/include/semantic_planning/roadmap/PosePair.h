@@ -11,10 +11,9 @@ inline bool isBefore(const GroundPose& a, const GroundPose& b) {
          std::tie(b.pose.x, b.pose.y, b.pose.phi, b.z);
 }
 
-/** Two poses that a curve connects, in the order in which it runs: the curve back may be another
- * one, so that one of them has to be agreed upon. The order is the poses' own (by x, y, heading,
- * z), whatever their vertices are called; but curves of a vehicle that only drives forward run as
- * they are driven. */
+/** Two poses that a curve connects, in the order in which it runs. The curve back may be another
+ * one, so one of them is agreed upon. The order is the poses' own (by x, y, heading, z), not their
+ * vertices'. Curves of a vehicle that only drives forward run as they are driven. */
 struct PosePair {
   PosePair(const GroundPose& a, const GroundPose& b)
       : first(isBefore(b, a) ? b : a), second(isBefore(b, a) ? a : b) {}

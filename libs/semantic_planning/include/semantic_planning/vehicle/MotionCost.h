@@ -37,8 +37,8 @@ class MotionCost {
 
   /** The shortest curve from a to b that the vehicle can drive. */
   ReedsSheppCurve shortest(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
-  /** The curves from a to b one of which is the cheapest in most cases: the shortest of all, and
-   * the shortest ones without a change of gear. */
+  /** The curves from a to b of which one is mostly the cheapest: the shortest of all, and the
+   * shortest without a change of gear. */
   std::vector<ReedsSheppCurve> curves(const mrpt::math::TPose2D& a,
                                       const mrpt::math::TPose2D& b) const;
 

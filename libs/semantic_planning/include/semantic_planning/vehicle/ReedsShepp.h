@@ -12,8 +12,8 @@ struct CurvePoint {
   bool forward = true;
 };
 
-/** A shortest curve of a car that drives forwards and backwards (Reeds, Shepp, "Optimal paths for a
- * car that goes both forwards and backwards", 1990): up to five arcs and straights. */
+/** A shortest curve of up to five arcs and straights (Reeds, Shepp, "Optimal paths for a car that
+ * goes both forwards and backwards", 1990). */
 class ReedsSheppCurve {
  public:
   struct Segment {
