@@ -80,8 +80,8 @@ class Output {
   void writeScan(const mrpt::obs::CObservation& observation, std::size_t points,
                  std::size_t labeled);
 
-  /** Adds a depth image with the labels of its pixels, if there are any: as pixelLabels if these
-   * can hold all classes (64), else as a labeled cloud. */
+  /** Adds a depth image with the labels of its pixels, if any: as pixelLabels if these can hold all
+   * classes (64), else as a labeled cloud. */
   void writeDepth(mrpt::obs::CObservation3DRangeScan& scan,
                   std::optional<labeled_cloud::LabelImage> labels);
 

@@ -155,8 +155,8 @@ const std::vector<std::string> kFiles = {"drive.csv", "drive.json",          "dr
 void printSummary(const DriveRecord& record) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1) << nameOf(record.end) << " after " << record.duration()
-       << " s and " << record.length << " m; " << record.replans << " replans, "
-       << record.collisions << " collisions, least clearance " << std::setprecision(2)
+       << " s and " << record.length << " m; replans: " << record.replans
+       << ", collisions: " << record.collisions << ", least clearance: " << std::setprecision(2)
        << record.leastClearance << " m; " << std::lround(100 * shareOfSlowCycles(record))
        << " % of cycles took more than 100 ms\n";
   notes() << text.str();

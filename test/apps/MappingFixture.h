@@ -16,8 +16,8 @@ inline const char* const kSmallConfig =
     "width = 300\n"
     "height = 200\n";
 
-/** A folder with a configuration, a class table and a rawlog of one scan: road at (2, 0, 0), a car
- * at (0, 3, 0), both from (1, 0, 0). */
+/** A folder with a configuration, a class table and a rawlog of one scan. From (1, 0, 0) it sees
+ * road at (2, 0, 0) and a car at (0, 3, 0). */
 class Rawlog2SemanticMap : public FolderTest {
  protected:
   void SetUp() override {

@@ -20,8 +20,8 @@ namespace {
 
 ClassTable roadGrassCar() { return tableOf({"road", "grass", "car"}); }
 
-/** Voxels of 1 m: road at x = 4.5 (seen twice), grass at 6.5, something without a label at 8.5;
- * free before 4, and 0.5 m to the side nothing is known. */
+/** Voxels of 1 m: road at x = 4.5 (seen twice), grass at 6.5, something without a label at 8.5.
+ * Before 4 it is free, and 0.5 m to the side unknown. */
 SemanticOcTree smallMap(const ClassTable& table = roadGrassCar()) {
   SemanticOcTree map(1.0, table);
   LabeledCloud cloud;

@@ -279,8 +279,8 @@ struct Garden {
 };
 
 /** A bent hedge between start and goal, which are 11 to 15 m apart. It ends 6 to 20 m aside, half
- * of the time with a hook; on the other side it ends after 6 to 20 m or at the garden's border. A
- * road leads along both sides and, mostly, around the end. */
+ * of the time with a hook. On the other side it ends after 6 to 20 m or at the border. A road leads
+ * along both sides and, mostly, around the end. */
 Garden garden(std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto between = [&random](double low, double high) {

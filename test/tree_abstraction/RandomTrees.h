@@ -31,8 +31,8 @@ struct Shape {
 /** Some leaf has a weight. */
 reference::Forest makeTree(const Shape& shape, Engine& random);
 
-/** Class 1 relevant, class 2 irrelevant if there is one, with random weights and alpha; for
- * tie-rich shapes weights at which many splits cost just what they tell. */
+/** Class 1 relevant, class 2 (if any) irrelevant, with random weights and alpha. Tie-rich shapes
+ * get weights at which many splits cost just what they tell. */
 tree_abstraction::AbstractionWeights makeWeights(const Shape& shape, Engine& random);
 
 /** A random distribution over `size` outcomes; some entries 0. */

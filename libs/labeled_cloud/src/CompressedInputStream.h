@@ -100,9 +100,9 @@ class MemoryOfObjects {
 /** Reads a file compressed with gzip or, as later releases of MRPT write them, with Zstandard; a
  * plain one as it is.
  *
- * Unlike MRPT's own streams it tells a file that was cut off or altered from one that ends: after
- * the end of the data, damage() says what is wrong. It does not throw while reading, since MRPT
- * takes any exception in front of an object for the end of the file. */
+ * Unlike MRPT's streams it tells a file that was cut off or altered from one that ends: damage()
+ * says so afterwards. It does not throw while reading, since MRPT takes any exception in front of
+ * an object for the end of the file. */
 class CompressedInputStream : public mrpt::io::CStream {
  public:
   /** \throw std::runtime_error naming the file, if it cannot be opened. */

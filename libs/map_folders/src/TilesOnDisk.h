@@ -9,8 +9,8 @@
 
 namespace semantic_octree {
 
-/** Which tiles of a map are in memory. A tile is an inner node at a depth: if it goes away, it
- * keeps its value and bookkeeping, so that nothing above it has to know. */
+/** Which tiles of a map are in memory. A tile is an inner node at a depth. If it goes away, it
+ * keeps its value and bookkeeping; nothing above has to know. */
 class TilesOnDisk : public TileSource {
  public:
   struct Place {

@@ -9,8 +9,8 @@ namespace {
 /** Triples of labels before any are seen, which repeat nothing. Right labels differ at borders
  * alone: of a few dozen such triples, chance makes a share that says nothing. */
 constexpr double kTriplesBefore = 100;
-/** Rounds of the search. Of two classes, one of which is taken for the other in every second case,
- * the rare one loses what it has of the frequent one slowly. */
+/** Rounds of the search. Where one of two classes is taken for the other in every second case, the
+ * rare one slowly loses what it has of the frequent one. */
 constexpr int kExpectations = 25, kExpectationsFromRight = 100;
 /** Rounds in which shares of classes are told from what places look like. More of them take all of
  * a rare class for places of a frequent one. */

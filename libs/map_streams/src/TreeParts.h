@@ -42,9 +42,9 @@ class PartList {
 
 /** What leads from the map that a receiver has to the compressed tree of another map. */
 struct TreeParts {
-  /** By step, then depth first. A part's step is that of the alpha path's tree that it is part of
-   * first; leaves at the trees' roots and above are of step 0. It begins something if the tree
-   * without it, and what comes behind it, is optimal for some alpha. */
+  /** By step, then depth first. A part's step is that of the alpha path's first tree with it.
+   * Leaves at the trees' roots and above are of step 0. It begins something if the tree without it,
+   * and what comes behind it, is optimal for some alpha. */
   PartList parts;
   /** Each step has an alpha that leads to its tree, and the alpha at which what it brings is worth
    * its price. The last is the map's own. */

@@ -34,9 +34,8 @@ void CalibrationFit::add(const ClassBelief<float>& belief, const std::vector<dou
 /** Sums over questions of what a step needs. */
 struct CalibrationFit::Step {
   double slope = 0, curvature = 0, ofShared = 0, all = 0;
-  // By classes, only if they have factors: what cells are, what is stated of cells that name the
-  // class, and, per unit of the factor, of the others. `unnamed`: of all cells as if they named
-  // none.
+  // By classes, only with factors: what cells are, what is stated of cells that name the class, and
+  // of the others per unit of the factor. `unnamed`: of all cells as if they named none.
   std::vector<double> is, stated, others;
   double unnamed = 0;
 

@@ -153,8 +153,8 @@ class CheckedReader {
  *   bytes, nanoseconds), factors of classes if there are any (doubles),
  * number of nodes (8 bytes; 0: the map is empty), the root's NodeKind (1 byte) and value,
  * then from each inner node on, depth first: two bits of NodeKind per child (2 bytes), the leaves'
- * values, the inner children. The value of a leaf is its log-odds. Its class record, if any, has the
- * number of named classes (1 byte), the rest's log-odds, and id (1 byte) and log-odds of each.
+ * values, the inner children. The value of a leaf is its log-odds. Its class record, if any, has
+ * the number of named classes (1 byte), the rest's log-odds, and id (1 byte) and log-odds of each.
  * Log-odds are 2 bytes, in units of 1/1024. Inner nodes' values follow from their children.
  *
  * An inner node at depth 14 is a block. First come which octants are known, leaves, leaves with a

@@ -35,9 +35,9 @@ std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<doubl
 /** Brings what was added to the last of such submaps into all of them. */
 void finish(std::vector<Submap>& submaps);
 
-/** What the last keyframes saw, for the next scan to be registered to. It grows with each keyframe;
- * where it has twice as many as are wanted, a second one, which began half way, takes its place
- * (Hess et al., 2016). Poses in it stay as they were registered, whatever becomes of the graph. */
+/** What the last keyframes saw, for the next scan to be registered to. It grows with each keyframe.
+ * At twice the wanted number a second one, which began half way, takes its place (Hess et al.,
+ * 2016). Poses in it stay as they were registered, whatever becomes of the graph. */
 class LocalMap {
  public:
   void clear() { m_parts.clear(); }

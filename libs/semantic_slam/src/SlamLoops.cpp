@@ -14,17 +14,17 @@ constexpr double kLoopMeters = 0.03, kLoopAngle = 0.1 * kDegree;
 constexpr double kCoarsest = 8;
 /** Looks for loops are so many keyframe distances apart. */
 constexpr double kLookEvery = 2;
-/** Window of a search: at first (cells of the grid), per meter of the way since the last loop, and
- * at most around where the robot seems to be (cells). Only if it is nowhere there, all of the
- * window is searched, each time that the robot went this share of it. That takes long, and more is
- * alike in it. */
+/** Window of a search, in cells of the grid: at first, per meter since the last loop (m), and at
+ * most around where the robot seems to be. Only if it is nowhere there, all of the window is
+ * searched, each time that the robot went this share of it. That takes long, and more is alike in
+ * it. */
 constexpr double kWindow = 10, kWindowDrift = 0.03, kNearWindow = 100, kLookShare = 1.0 / 8;
 constexpr double kAngle = 8 * kDegree, kAngleDrift = 0.3 * kDegree, kLargestAngle = 45 * kDegree;
 /** Without registration the robot may be off as after so many times the way more. */
 constexpr double kLostMore = 9;
 constexpr std::size_t kMostPlaces = 3;
-/** Cells of the grid: least window in which a loop that is left is searched at the end, and how far
- * off a find has to be for a warning. */
+/** Cells of the grid: least window of a search at the end, and how far off a find has to be for a
+ * warning. */
 constexpr double kLeftWindow = 20, kApart = 3;
 /** Least share of the highest score where poses are right already, by the first window. Where they
  * would move it is one of the stretch's own score, for people and noise fit nowhere. What goes on

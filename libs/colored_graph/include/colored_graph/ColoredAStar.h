@@ -47,8 +47,8 @@ struct PathResult {
   SearchStatus status = SearchStatus::NotConnected;
   std::vector<VertexId> vertices;  ///< start to goal; empty if there is no path
   std::vector<EdgeId> edges;       ///< one fewer than the vertices
-  /** Worst rank first: one number for each rank but rank 0, then the total length (CostKind), and
-   * before it the total length with tolls, if the model counts these. */
+  /** Worst rank first: a number for each rank but rank 0, then the total length with tolls, if the
+   * model counts these, then without (CostKind). */
   std::vector<std::int64_t> cost;
   /** By class id: what the profiles of the edges add up to, whatever the edge model. */
   std::vector<Length> lengthPerClass;
@@ -62,9 +62,9 @@ struct PathResult {
  * The function is the first search of ColoredReplanner: A* over cost vectors, from the goal. Each
  * edge is evaluated at most once and most never are. Among paths of equal cost and as many edges,
  * it takes the smaller vertex id at each step from the start. \param graph keeps the profiles of
- * the edges that were evaluated. \throw std::invalid_argument model invalid, an unevaluated edge
- * without options.evaluate, an evaluation that contradicts the edge's least length, or a lower
- * bound of lengths that turns out not to be consistent. */
+ * the edges that were evaluated. \throw std::invalid_argument invalid model, an unevaluated edge
+ * without options.evaluate, an evaluation below the edge's least length, an inconsistent lower
+ * bound of lengths. */
 PathResult findColoredPath(ColoredGraph& graph, VertexId start, VertexId goal,
                            const CostModel& model, const SearchOptions& options = {});
 

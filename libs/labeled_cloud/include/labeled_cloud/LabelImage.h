@@ -116,13 +116,13 @@ inline strict_files::Choices<LabelFolderOptions::Match> choicesOf(LabelFolderOpt
  */
 class LabelFolder : public ImageLabeler {
  public:
-  /** \throw std::runtime_error naming the folder or file: no such folder, no label image in it, or
-   * (Match::Time) a file whose name is not a time, or two of one time. */
+  /** \throw std::runtime_error naming the folder or file: none, no label image in it, or
+   * (Match::Time) a name that is no time, or two of one time. */
   LabelFolder(const std::filesystem::path& folder, const semantic_types::ClassTable& table,
               const LabelFolderOptions& options = {});
 
-  /** \throw std::runtime_error naming the file: unreadable, of another kind, or an id or color that
-   * the class table does not know; or (Match::Name) the observation has no external image. */
+  /** \throw std::runtime_error naming the file: unreadable, of another kind, an id or color that
+   * the class table lacks, or (Match::Name) an observation without external image. */
   std::optional<LabelImage> label(const mrpt::obs::CObservation& observation) override;
 
  private:

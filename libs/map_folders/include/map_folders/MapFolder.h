@@ -86,8 +86,8 @@ class MapFolder {
    * outlive this
    * \throw std::invalid_argument the map is not empty, or is in a folder; bad options; a draft
    * without a place
-   * \throw std::runtime_error naming the folder or file: it cannot be read or written, is of a map
-   * with another resolution, other classes or parameters, or another process writes into it. */
+   * \throw std::runtime_error naming the folder or file: it cannot be read or written, is of
+   * another resolution, classes or parameters, or another process writes into it. */
   MapFolder(SemanticOcTree& map, const std::filesystem::path& folder, Access access,
             const MapFolderOptions& options = {});
   /** What was not saved is lost. */

@@ -31,8 +31,8 @@ enum class Limits {
   Keep
 };
 
-/** Adds what maps of one frame know, as if each had been made of scans that the others have not
- * seen: log-odds h_k - prior are summed voxel by voxel.
+/** Adds what maps of one frame know, as if no scan was in two of them: log-odds h_k - prior are
+ * summed voxel by voxel.
  *
  * Maps that age (SemanticOcTree::age()) are added as they are now; the sum's clock is the latest of
  * theirs.
@@ -66,8 +66,8 @@ SemanticOcTree coarsened(const SemanticOcTree& map, int levels);
  * \throw std::length_error it cuts leaves that are too large. */
 SemanticOcTree moved(const SemanticOcTree& map, const Eigen::Isometry3d& T_new_old);
 
-/** How much of what is in a map. A voxel is a cell of the map's resolution: a leaf above the lowest
- * level counts as all voxels in it, so that pruning does not change the numbers. */
+/** How much of what is in a map. A leaf above the lowest level counts as all voxels in it, so
+ * pruning does not change the numbers. */
 struct MapContents {
   std::size_t leaves = 0, innerNodes = 0;
   /** See SemanticOcTree::memoryUsage(). */

@@ -13,8 +13,8 @@ struct SmoothingOptions {
    * single voxel as sure as its four neighbors of another class keeps its class. 0: each voxel for
    * itself.
    *
-   * Voxels in which no label was seen are answered for by their 26 neighbors: those across an edge
-   * with half the weight, those across a corner with a quarter. */
+   * For voxels in which no label was seen their 26 neighbors answer: across an edge with half the
+   * weight, across a corner with a quarter. */
   double neighborWeight = 1;
 
   void describe(strict_files::OptionList& list);

@@ -123,8 +123,8 @@ class MapReceiver {
   std::unique_ptr<State> m_state;
 };
 
-/** Tells what becomes of a map's compressed tree, to any number of copies, by messages of any size
- * that arrive in order or are lost, as those of topics. */
+/** Tells any number of copies what becomes of a map's compressed tree, by messages that arrive in
+ * order or are lost, as topics' do. */
 class TreeBroadcast {
  public:
   /** \param map keeps G-values (setAbstraction()) before the first call, and outlives this

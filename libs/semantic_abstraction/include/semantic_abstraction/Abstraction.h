@@ -13,7 +13,7 @@ namespace semantic_octree {
 
 /** \file
  * Words: the abstraction of a map is an optimization, given by weights and alpha
- * (AbstractionOptions); the compressed tree is what comes out, and compressedMap() a map of it.
+ * (AbstractionOptions). The compressed tree comes out, and compressedMap() is a map of it.
  *
  * From alpha to the leaves: AbstractionOptions -> GTree (src/GTree.h: from the leaves up, G-values)
  * -> CompressedTree (src/CompressedTree.h: from the root down, leaves). */

@@ -25,8 +25,8 @@ struct DriveOptions {
 
   // For programs, without a name in files.
   double maxJerk = 3;  ///< m/s^3, along the way; infinite: no limit
-  /** The least radius that the vehicle drives, and what is kept free around its footprint on the
-   * way ahead, meters: setFor() takes both from vehicle and map. */
+  /** The least radius that the vehicle drives, and what is kept free around its footprint ahead, m:
+   * setFor() takes both from vehicle and map. */
   double turningRadius = 0.8, margin = 0.1;
 
   static constexpr double kSlowest = 0.1;       ///< m/s, as long as there is way left

@@ -26,9 +26,9 @@ struct Frontier {
 struct Effort {
   double spent = 0;     ///< by now
   double expected = 0;  ///< in all, when it began (Exploration::hoped); 0: it begins now
-  /** What a meter through the unknown counts, of what it counted at first: the root of how many
-   * times the way that was expected it has become. The freespace assumption is wrong again and
-   * again along a hedge, where it always hopes for a gap just beyond what is seen.
+  /** What a meter through the unknown counts, relative to the first: the root of driven over
+   * expected way. The freespace assumption is wrong again and again along a hedge, where it always
+   * hopes for a gap just beyond what is seen.
    * \param left to the goal by now, weighted meters */
   double doubt(double left) const;
 };

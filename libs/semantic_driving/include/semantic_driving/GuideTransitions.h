@@ -25,8 +25,8 @@ struct GuideOptions {
   void validate() const;
 };
 
-/** Where a path leads: nowhere (there is none), to the goal, to where to see more, out of where the
- * vehicle must not be, back along its own track. */
+/** Where a path leads: nowhere, to the goal, to where to see more, out of where the vehicle must
+ * not be, back along its own track. */
 enum class Target { None, Goal, Frontier, Recovery, Back };
 const strict_files::Choices<Target>& choicesOf(Target);
 /** "none", "goal", "frontier", "recovery" or "back". */
@@ -45,7 +45,7 @@ struct ToFrontier {
   std::optional<double> blockedSince;
 };
 /** On a way out of where the vehicle must not be. Blind: it does not see the ground that it stands
- * on, so that the way is driven to its end; otherwise up to where it can plan. */
+ * on, so the way is driven to its end, else up to where it can plan. */
 struct Recovering {
   bool blind = false;
   std::optional<double> blockedSince;

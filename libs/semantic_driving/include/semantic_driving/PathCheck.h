@@ -53,9 +53,9 @@ class ForwardTurns {
                         double longest = PathJudgment::kLongestBackwards);
 
   /** The path of the least MotionCost with a shortest curve that only goes forward
-   * (ReedsShepp::connectForward()), in place of a part with changes of gear. The curve may be
-   * longer there, but over no worse class than that part has, or than the whole path if that has
-   * too long a stretch backwards.
+   * (ReedsShepp::connectForward()), in place of a part with changes of gear. There the curve may be
+   * longer, but over no worse class than that part has, or the whole path if it goes backwards too
+   * far.
    * \param from arc length up to which the path stays, meters \param worth by so much the price has
    * to be lower, meters forward \return nothing if there is none */
   std::optional<DrivePath> find(const DrivePath& path, double from, double worth) const;
@@ -82,9 +82,9 @@ struct GoalMisfit {
   semantic_types::ClassId classId = semantic_types::kNoClass;  ///< of what is there
 };
 
-/** What is known to be in the way of a vehicle at a goal, or of its clearance, nearest first; empty
- * if there is nothing, or too little is known. As SemanticPlanner::check() does, but for what is
- * not known: that may turn out to be ground.
+/** What is known to be in the way of a vehicle at a goal or of its clearance, nearest first; empty
+ * if nothing, or too little is known. As SemanticPlanner::check() does, but for what is not known:
+ * that may turn out to be ground.
  *
  * Heights of the ground spread from below the vehicle. Beyond ground that was not seen they are
  * guessed, so that only what stands next to ground that was seen counts.

@@ -59,8 +59,8 @@ class ViewStrategy {
    * (GainField::growth()), nats summed over voxels; 0 unless it is predicted. The map has to be as
    * it was. */
   virtual view_information::Bounds growth() const { return {}; }
-  /** What a look from a pose on ground of height z is expected to tell, by the map of the last call
-   * of next(), nats; 0 unless it is predicted. */
+  /** What a look from a pose on ground of height z may tell by the last next()'s map, nats; 0
+   * unless it is predicted. */
   virtual double promise(const mrpt::math::TPose2D&, double) { return 0; }
   /** What looking at a column of the map (keys) may still tell, nats; 0 unless it is
    * predicted. */

@@ -23,10 +23,9 @@ inline std::vector<Column> inMortonOrder(std::vector<Column> tiles) {
   return tiles;
 }
 
-/** Tiles that are set, each with a T of its own, within a rectangle that grows as they are: by more
- * than needed, so that it seldom does. Of what is not set a pointer is all that is taken: ground
- * along a way is a small part of its rectangle. A copy shares the tiles until one of the two is
- * about to change. */
+/** Tiles that are set, each with a T of its own. Their rectangle grows by more than needed, and so
+ * seldom. Of what is not set a pointer is all that is taken: ground along a way is a small part of
+ * its rectangle. A copy shares the tiles until one of the two is about to change. */
 template <class T>
 class ColumnGrid {
  public:

@@ -10,8 +10,8 @@
 namespace semantic_planning {
 
 /** What a length of each class costs beside the cost of driving it, in its units: the rates of an
- * order. Infinite rates are so large here that a length of such a rank outweighs what is likely of
- * all better ones; sums of 100 km stay below 2^62. */
+ * order. Infinite rates are so large that a length of such a rank outweighs likely lengths of all
+ * better ones. Sums of 100 km stay below 2^62. */
 class ClassPrices {
  public:
   using Length = colored_graph::Length;

@@ -25,7 +25,7 @@ inline double radicalInverse(unsigned i, unsigned base) {
 }
 
 /** The i-th point, from 1 on, of a sequence that fills [0, 1)^4 evenly (Halton, "On the efficiency
- * of certain quasi-random sequences of points in evaluating multi-dimensional integrals", 1960). */
+ * of certain quasi-random sequences", 1960). */
 inline std::array<double, 4> haltonPoint(unsigned i) {
   return {radicalInverse(i, 2), radicalInverse(i, 3), radicalInverse(i, 5), radicalInverse(i, 7)};
 }
@@ -85,8 +85,8 @@ std::vector<GroundPose> candidatesAt(const CandidatePoint& point, const Collisio
 std::optional<GroundPose> haltonPose(unsigned draw, const PlanningRegion& region,
                                      const Ground& ground, unsigned seed);
 
-/** A number in [0, 1) that spreads the cells of a grid: the fraction of cells below any bound is
- * the bound, in every neighborhood (ordered dithering, Bayer 1973). */
+/** A number in [0, 1) for each cell of a grid. In every neighborhood the share of cells below any
+ * bound is that bound (ordered dithering, Bayer 1973). */
 double dither(unsigned x, unsigned y, unsigned seed);
 
 }  // namespace semantic_planning

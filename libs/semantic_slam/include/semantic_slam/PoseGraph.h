@@ -35,8 +35,8 @@ Eigen::Isometry3d movedFor(double seconds, const Vector6& velocity);
 /** The inverse of movedFor(). \param seconds above 0 */
 Vector6 velocityOf(const Eigen::Isometry3d& T_before_after, double seconds);
 
-/** Over less time (s) what poses err by would count for more than how far a robot gets: scans of
- * several sensors come a few milliseconds after each other. */
+/** Over less time (s) poses' errors would count for more than motion: scans of several sensors come
+ * a few milliseconds after each other. */
 constexpr double kLeastTimeOfVelocity = 0.05;
 
 /** The nearest pose whose rotation is one to the last bits: products of products drift. */

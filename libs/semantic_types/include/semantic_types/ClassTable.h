@@ -117,9 +117,8 @@ inline Color trafficLight(double value) {
  *       - {id: 1, name: road, color: [128, 64, 128], raw: [40, 60]}  # raw may be left out
  *       - {id: 2, name: person, color: [220, 20, 60], half_life: 2}  # seconds; may be left out
  *
- * \throw std::runtime_error naming file, line and value: unreadable, YAML syntax, unknown, repeated
- * or missing key, ids with gaps or twice, colors not 0..255, half-lives not 0.001 to 1e9 s, a raw
- * id or a name used twice. */
+ * \throw std::runtime_error naming file, line and value: unreadable, YAML syntax, wrong keys, ids
+ * with gaps or twice, colors not 0..255, half-lives not 0.001 to 1e9 s, a raw id or name twice. */
 ClassTable loadClassTable(const std::filesystem::path& file);
 
 }  // namespace semantic_types

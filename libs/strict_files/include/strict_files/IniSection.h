@@ -13,9 +13,8 @@
 
 namespace strict_files {
 
-/** Reads a section of an .ini file into options, strictly, where MRPT ignores keys it does not
- * know: call read() or text() for what is known, then finish(). Keys that are absent leave their
- * option as it is. */
+/** Reads a section of an .ini file into options, strictly: MRPT ignores unknown keys. Call read()
+ * or text() for what is known, then finish(). Keys that are absent leave their option as it is. */
 class IniSection {
  public:
   /** \param source An mrpt::config::CConfigFileBase, or what has its getAllKeys() and

@@ -56,8 +56,8 @@ class Question {
   /** Weighted divergence of the terms of p from q, K + 1 probabilities each: below 0 where what is
    * to be ignored moved more. */
   double divergence(const double* p, const double* q) const;
-  /** How far a mean over many moves when the belief of one moves from q to p: weighted chi-square
-   * distance of the terms to be ignored (lower) and relevant (upper). */
+  /** How far a mean over many moves when one's belief moves from q to p: weighted chi-square
+   * distance of ignored (lower) and relevant (upper) terms. */
   Bounds distance(const double* p, const double* q, const double* mean) const;
   /** (g): how far an outcome moves what is believed of a cell, the weighted divergence of the terms
    * after it from before. Its mean over the outcomes as the belief predicts them is information().

@@ -18,9 +18,9 @@ class NearestPoses;
  * tolls are what driving them costs beyond their length (MotionCost). A vehicle that only drives
  * forward has an edge for each way.
  *
- * An edge connects a with b if b is among the k nearest of a, or a among those of b; this holds
- * after every insertion and removal. Query vertices (start and goal) have edges to twice as many,
- * but are nobody's neighbors.
+ * An edge connects a with b if b is among the k nearest of a, or a among those of b, after every
+ * insertion and removal. Query vertices (start and goal) have edges to twice as many, but are
+ * nobody's neighbors.
  *
  * With RoadmapOptions::maxEdges the best of these edges stay: every vertex's nearest first, then
  * every vertex's second nearest, and so on; of those the shortest. They, too, are chosen anew after
