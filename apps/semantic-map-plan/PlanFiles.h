@@ -25,7 +25,6 @@ cv::Mat drawPlan(map_pictures::MapCanvas canvas, const semantic_planning::Semant
                  const semantic_planning::PlanResult& plan, const mrpt::math::TPose2D& start,
                  const mrpt::math::TPose2D& goal);
 
-/** Name of a ground's class. */
 std::string groundName(semantic_types::ClassId id, const semantic_types::ClassTable& classes);
 
 /** One line a pose: x,y,z,heading,curvature,gear,class,arc_length. Meters, degrees, 1/m. */

@@ -156,7 +156,6 @@ class UserData : public MapTool {
       EXPECT_EQ(folder.read(files[i]), before[i]) << files[i];
     EXPECT_EQ(entriesOf(folder.path()), entries) << program;
   }
-  /** A rawlog of one scan, and config.ini for it. */
   void writeMapping(const std::string& rawlog) const {
     folder.write("config.ini", "[map]\nresolution = 0.5\nclasses = classes.yaml\n");
     folder.write("classes.yaml", kSmallTable);

@@ -19,7 +19,6 @@ std::vector<Reader> mapReaders();
 std::vector<Reader> libraryReaders();
 /** The readers of what only programs read. */
 std::vector<Reader> programReaders();
-/** All readers. */
 const std::vector<Reader>& readers();
 
 /** The classes of the maps and files that readers expect. */

@@ -130,7 +130,6 @@ TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
   }
 }
 
-/** The box around all leaves, keys. */
 KeyBox boxAround(const SemanticOcTree& map) {
   KeyBox box = {Eigen::Array3i::Constant(kNumKeys), Eigen::Array3i::Zero()};
   for (auto it = map.begin_leafs(); it != map.end_leafs(); ++it) {

@@ -27,7 +27,6 @@ std::size_t termNamed(const LiveCompression& live, const std::string& name) {
   return term;
 }
 
-/** The leaves of the compressed tree. */
 std::set<CubeId> leavesOf(const SemanticOcTree& map, const LiveCompression& live) {
   map_view::CellLook look(map);
   map_view::ViewStyle style;

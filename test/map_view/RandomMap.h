@@ -12,7 +12,6 @@ inline CubeId cubeOf(const Eigen::Array3i& lowest, int depth) {
   return {lowest.x(), lowest.y(), lowest.z(), depth};
 }
 
-/** road, tree, wall */
 inline semantic_types::ClassTable threeClasses() {
   return tableOf({{"road", {200, 30, 30}}, {"tree", {30, 180, 60}}, {"wall", {40, 60, 210}}});
 }

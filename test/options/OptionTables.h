@@ -16,5 +16,4 @@ struct OptionTable {
 /** All tables of the handbook's page of options, in its order. */
 std::vector<OptionTable> optionTables();
 
-/** The page. */
 std::string optionsPage();

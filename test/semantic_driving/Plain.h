@@ -30,7 +30,6 @@ inline synthetic_world::World plain(synthetic_world::Solids solids = {}, double 
   return synthetic_world::World(synthetic_world::Terrain(20, {}), cover, std::move(solids));
 }
 
-/** Adds a wall from a to b. */
 inline void addWall(synthetic_world::Solids& solids, const Eigen::Vector2d& a,
                     const Eigen::Vector2d& b) {
   const auto wall = synthetic_world::wallPanel({a.x(), a.y(), 0}, {b.x(), b.y(), 0}, 2);

@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 
 using Folder = TemporaryFolder;
 
-/** Runs the program in the folder with these arguments. */
 inline ProgramRun run(const Folder& folder, const std::string& arguments) {
   return runCommand("cd '" + folder.path().string() + "' && '" MSO_BIN_DIR "/synth-rawlog' " +
                     arguments);

@@ -6,7 +6,6 @@
 
 namespace bags {
 
-/** A topic of a bag. */
 struct BagTopic {
   std::string name, type;  ///< "/lidar/points", "sensor_msgs/msg/PointCloud2"
 };

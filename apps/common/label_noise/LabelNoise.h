@@ -50,7 +50,6 @@ class LabelNoise {
   Cubes m_fixed;
 };
 
-/** The option --label-noise-kind. */
 void addLabelNoiseKind(CLI::App& app, LabelNoise::Kind& kind);
 
 }  // namespace label_noise

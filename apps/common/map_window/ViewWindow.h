@@ -28,7 +28,6 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   static std::unique_ptr<ViewWindow> open(const std::string& title, int width, int height);
   ViewWindow(const std::string& title, int width, int height);
 
-  /** Maps. */
   const mrpt_compat::drawing::CSetOfObjects::Ptr& maps() const { return m_maps; }
   /** What lies upon them. */
   const mrpt_compat::drawing::CSetOfObjects::Ptr& marks() const { return m_marks; }

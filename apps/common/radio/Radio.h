@@ -26,7 +26,6 @@ struct Peer {
   }
 };
 
-/** A socket of UDP. */
 class UdpSocket {
  public:
   /** \param port 0: any that is free

@@ -55,7 +55,6 @@ void readAll(const strict_files::StrictYaml& yaml, const YAML::Node& node,
   yaml.read(node, list);
 }
 
-/** Adds the counts of one true class. */
 void addRow(const strict_files::StrictYaml& yaml, const YAML::Node& row,
             const std::vector<ClassId>& classes, std::vector<double>& counts) {
   yaml.checkList(row, "confusion");

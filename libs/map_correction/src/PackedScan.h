@@ -105,7 +105,6 @@ PackedScan packed(const Scan& scan);
 void unpack(const PackedScan& packed, const TileCodes& wanted, int numClasses,
             const InsertionOptions& options, Scan& scan);
 
-/** All tiles of a scan. */
 TileCodes tilesOf(const PackedScan& scan);
 /** The tiles in which not the same was seen; all, if labels are not trusted alike. */
 TileCodes differingTiles(const PackedScan& a, const PackedScan& b);

@@ -50,7 +50,6 @@ void countBelow(const NodeStore& store, const Slot& inner, Count& count) {
   }
 }
 
-/** Adds the cubes at a depth that a scan touched. */
 void addTouched(const Scan& scan, const Cube& cell, int depth, std::vector<VoxelIndex>& cubes) {
   if (!scan.pyramid().at(ScanPyramid::kTopLevel - cell.depth, indexOf(cell)).any()) return;
   if (cell.depth == depth) return cubes.push_back(indexOf(cell));

@@ -95,7 +95,6 @@ struct Before {
   bool is(const StreamLeaf& leaf) const { return kind == Kind::Leaf && leafOf(node) == leaf; }
 };
 
-/** A map's compressed tree. */
 struct CompressedMap {
   const SemanticOcTree& map;
   const Abstraction& abstraction;

@@ -76,7 +76,6 @@ void addLabels(semantic_types::LabeledCloud& cloud, const py::object& labels, in
 /** A file of classes, names, or names with their colors. \throw py::value_error */
 semantic_types::ClassTable classTableOf(const py::object& argument);
 bool isPath(const py::handle& argument);
-/** Refuses a name that is none of the classes'. */
 [[noreturn]] void refuseClass(const std::string& argument, const std::string& name,
                               const semantic_types::ClassTable& classes);
 

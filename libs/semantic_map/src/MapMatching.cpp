@@ -94,7 +94,6 @@ class NearestOccupied {
   Eigen::Vector3d m_weights;
 };
 
-/** Adds the center of each voxel in a leaf. */
 void addCenters(const SemanticOcTree::leaf_iterator& leaf, double voxel, CPointsMap& points) {
   const int n = static_cast<int>(std::lround(leaf.getSize() / voxel));
   const auto at = [&](double center, int i) {

@@ -257,7 +257,6 @@ void dropGhosts(const ColumnTile& columns, int column, std::ptrdiff_t begin,
   surfaces.erase(kept, surfaces.end());
 }
 
-/** A tile's own surfaces and what is offered. */
 SurfaceTile merged(const SurfaceTile& own, const std::vector<Offer>& offers,
                    const ColumnTile& columns) {
   SurfaceTile result;

@@ -50,7 +50,6 @@ std::optional<double> curvatureInto(const TPose2D& from, const Arc& into) {
   return std::abs(curvature) < kLeastCurvature ? 0 : curvature;
 }
 
-/** The heading of both where they meet. */
 double headingWhereTheyMeet(const TPose2D& from, double curvature, const Arc& into) {
   if (into.curvature == 0) return into.begin.phi;
   if (curvature == 0) return from.phi;
