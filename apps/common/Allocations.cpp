@@ -1,9 +1,9 @@
 // Allocations of this program and of all libraries in it: symbols of a program are found before
 // those of libraries. MRPT makes room for as much as a rawlog says it holds before it reads it, and
-// has no other place where it could be stopped. Two rawlogs of test/fuzz/corpus/rawlog/ show it.
-// Without what stands here, rawlog2semantic-map ends by a segmentation fault over
-// depth_image_beyond_memory (274 bytes). Over velodyne_calibration_beyond_memory (217 bytes) it
-// takes 17 GB and more than a minute. With it both are refused within a second.
+// can be stopped nowhere else. Two rawlogs of test/fuzz/corpus/rawlog/ show it. Without what stands
+// here, rawlog2semantic-map ends by a segmentation fault over depth_image_beyond_memory (274
+// bytes). Over velodyne_calibration_beyond_memory (217 bytes) it takes 17 GB and more than a
+// minute. With it both are refused within a second.
 #include <strict_files/Memory.h>
 
 #include <cstddef>

@@ -123,10 +123,10 @@ std::filesystem::path imagesOf(const std::filesystem::path& rawlog);
 Summary convertSemanticKitti(const std::filesystem::path& sequence, const Conversion& conversion);
 
 /** A sequence in the layout of TUM RGB-D with label images: depth.txt, label.txt, groundtruth.txt,
- * camera.ini and perhaps rgb.txt. The poses are those of the optical frame (x right, y down, z
- * forward); the robot's frame is the camera's with x forward, y left, z up.
- * Without `labels`: CObservation3DRangeScan without labels (label.txt is not read).
- * With them: with pixelLabels if these can hold all classes (64), else a CObservationLabeledCloud.
+ * camera.ini and perhaps rgb.txt. The poses are of the optical frame (x right, y down, z forward).
+ * The robot's frame is the camera's with x forward, y left, z up. Without `labels`:
+ * CObservation3DRangeScan without labels (label.txt is not read). With them: with pixelLabels if
+ * these can hold all classes (64), else a CObservationLabeledCloud.
  * \throw std::runtime_error as above. */
 Summary convertTumSequence(const std::filesystem::path& folder, const Conversion& conversion);
 

@@ -56,8 +56,8 @@ void drawRobot(MapCanvas& canvas, const DriveLoop& loop) {
 
 const map_pictures::LegendEntry kLeft{"may still tell something", kLeftColor};
 
-/** In shades of what unknown space promises that nothing is known about: it is the same pink in all
- * frames, while the robot learns what to expect. */
+/** In shades of what wholly unknown space promises. That is the same pink in all frames, while the
+ * robot learns what to expect. */
 void shadeWhatIsLeft(MapCanvas& canvas, const Eigen::AlignedBox2d& part, DriveLoop& loop) {
   constexpr double kFar = 1000, kOfUnknown = 0.35, kMost = 0.85, kLeast = 0.01;  // m, shares
   const double anywhere = loop.leftToSee(part.max().x() + kFar, part.max().y());

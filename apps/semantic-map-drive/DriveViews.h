@@ -22,8 +22,8 @@ constexpr double kCutAbove = 2.5;
 std::string caption(const DriveLoop& loop);
 Eigen::AlignedBox2d around(const mrpt::math::TPose2D& pose, double meters);
 
-/** The drive from above: the robot's map in its classes' colors, start and goal, what is left of
- * the path, the driven track, and the robot. One picture is like the other in place and size. */
+/** The drive from above: the map in its classes' colors, start and goal, the rest of the path, the
+ * driven track, the robot. One picture is like the other in place and size. */
 class DrivePicture {
  public:
   /** \param region of the world, m \param longerEdge of it, at least so many pixels

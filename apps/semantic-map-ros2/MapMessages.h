@@ -41,8 +41,8 @@ class MapMessages {
   ros2::Publication<ros2::Octomap> m_writesOctomap;
 };
 
-/** A map's compressed tree for those who keep a copy: `~/change` has what changed, `~/compressed`
- * all of it, for who comes late or lost a change. */
+/** A map's compressed tree for those who keep a copy. `~/change` has what changed, `~/compressed`
+ * all of it, for who lost a change. */
 class TreeMessages {
  public:
   /** Node and map must outlive it. \param frame of the map */

@@ -11,8 +11,8 @@
 
 namespace {
 
-/** The lowest panel at the left: its field, and its list of what lies upon the map; and how much
- * lower it is for a second map. */
+/** The lowest panel at the left: its field, its list of what lies upon the map, and how much lower
+ * a second map puts it. */
 constexpr int kFieldX = 150, kFieldY = 504, kListX = 28, kListY = 531, kSecondMap = 57;
 
 SemanticOcTree part(double from, double to) {

@@ -31,8 +31,8 @@ class InTiles {
   std::optional<StoredMap> m_stored;
 };
 
-/** More cells than a picture shows: hills of 904 x 904 columns, classes in squares, each patch of 8
- * x 8 columns seen from 1 m above. */
+/** More cells than a picture shows: hills of 904 x 904 columns, classes in squares, each 8 x 8
+ * columns seen from 1 m above. */
 SemanticOcTree wideField() {
   constexpr int kPatches = 113, kEdge = 8;
   constexpr double kVoxel = 0.2;

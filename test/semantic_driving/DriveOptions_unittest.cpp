@@ -16,8 +16,8 @@ namespace {
 const std::vector<Eigen::Vector2d> kFootprint = {
     {-0.25, -0.3}, {0.55, -0.3}, {0.55, 0.3}, {-0.25, 0.3}};
 
-/** Where a vehicle stands that drives at full speed and then is left the way to come to rest: x
- * less the end of that way, meters. */
+/** Where a vehicle at full speed stands that is left the way to come to rest: x less the end of
+ * that way, m. */
 double overshoot(double acceleration) {
   DriveOptions options;
   options.maxAcceleration = acceleration;

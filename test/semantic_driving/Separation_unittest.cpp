@@ -119,8 +119,8 @@ class Robot {
   double m_begin = 0;  ///< s, of the next drive
 };
 
-/** Who crosses a place of the path when the robot gets there, more or less, from any side, and does
- * not meet it at its start. */
+/** Who crosses a place of the path about when the robot gets there, from any side, and does not
+ * meet it at its start. */
 Person crossing(std::mt19937& random) {
   const auto between = [&random](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);

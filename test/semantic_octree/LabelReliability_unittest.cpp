@@ -16,8 +16,8 @@ FilterParameters trusting(double accuracy, double correlation) {
   return p;
 }
 
-/** Labels of cells of random classes: each is the one before it with probability `correlation`
- * (any two are correlated so if there are two), else drawn anew. */
+/** Labels of cells of random classes: each repeats the one before with probability `correlation`,
+ * else it is drawn anew. */
 LabelAgreement agreementOfPairs(double accuracy, double correlation, int K, int cells,
                                 std::mt19937& random) {
   std::uniform_real_distribution<double> chance;

@@ -72,8 +72,8 @@ TEST_F(PoseSearchTest, aVehicleThatOnlyDrivesForwardIsGivenNoWayBackwards) {
 }
 
 TEST_F(PoseSearchTest, aWayIntoANarrowPlaceIsFoundFromWithin) {
-  // A garage that is open in the west. In the east is a gap that is too narrow for the vehicle, but
-  // the nearest way by its wheels: from there thousands of poses lead nowhere.
+  // A garage that is open in the west. In the east is a gap too narrow for the vehicle, but the
+  // nearest way by its wheels. From there thousands of poses lead nowhere.
   world.floor(-15, 15, -15, 15, PaintedWorld::Road);
   for (const double y : {-0.8, 0.6}) world.box(-7, -2, y, y + 0.2, 0, 1, PaintedWorld::Wall);
   for (const double y : {-0.8, 0.2}) world.box(-2, -1.8, y, y + 0.6, 0, 1, PaintedWorld::Wall);

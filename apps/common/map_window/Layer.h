@@ -17,8 +17,8 @@ struct WantedTiles {
 /** A map that is open. */
 class Layer {
  public:
-  /** A map's own file, OctoMap's, or a folder of tiles. What of the latter takes more memory than
-   * is wanted is opened as if its voxels had 2, 4, 8 ... times their edge: the finest that fits.
+  /** A map's own file, OctoMap's, or a folder of tiles. A folder that takes more memory than is
+   * wanted is opened with voxels of 2, 4, 8 ... times their edge: the finest that fit.
    * \throw std::runtime_error naming the file and what is wrong. */
   explicit Layer(const std::filesystem::path& file, const WantedTiles& wanted = {});
   /** One that a program makes. It must outlive the layer; grown() says that it has changed. */

@@ -94,11 +94,11 @@ double trustIn(const std::vector<Asked>& asked) {
   return 1 - doubt;
 }
 
-/** Mixtures state too little: voxels of a cell err in different ways, so that the class of most of
- * them is right more often than each. What a voxel is follows from its own statement and from its
- * cell, and the compressed map's power and factors make that likely. Cells of one size are trusted
- * alike; of a single voxel that hears itself, nothing but its statement is left. A map that is not
- * calibrated has compressed maps that are not. */
+/** Mixtures state too little: voxels of a cell err in different ways, so most of them are right
+ * more often than each. What a voxel is follows from its own statement and from its cell, and the
+ * compressed map's power and factors make that likely. Cells of one size are trusted alike; of a
+ * single voxel that hears itself, nothing but its statement is left. A map that is not calibrated
+ * has compressed maps that are not. */
 void calibrate(const SemanticOcTree& map, SemanticOcTree& compressed) {
   const Calibration& own = map.filterParameters().calibration;
   if (own.isIdentity()) return;

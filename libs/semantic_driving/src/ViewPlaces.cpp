@@ -21,8 +21,8 @@ double directionOf(Column from, Column to) { return std::atan2(to.y - from.y, to
 
 double turnBetween(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
 
-/** No surface is known there, and nothing stands there: where the ground goes downhill, what beams
- * passed at the height of the ground before is free. */
+/** No surface is known there, and nothing stands there: downhill, what beams passed at the height
+ * of the ground before is free. */
 bool isUnknownColumn(const Ground& ground, Column c, int z) {
   return ground.surfaces(c).empty() && !ground.isOccupied(c, z - 1, z + 1);
 }

@@ -45,8 +45,8 @@ class DoneViews {
 double wayBetween(const GroundFlood& flood, double voxelSize, semantic_planning::Column a,
                   semantic_planning::Column b);
 
-/** The order of stops in which most is had soonest: least sum over legs of length times what is not
- * had yet (the weighted traveling repairman's). Exact, for at most 12 stops.
+/** The order of stops in which most is had soonest: least sum of legs' lengths times what is
+ * missing (the weighted traveling repairman's). Exact, for at most 12 stops.
  * \param ways[i][j] from stop i to j; the last row is from where the vehicle is
  * \param worth of each stop \return the stop to go to first */
 std::size_t firstStop(const std::vector<std::vector<double>>& ways,

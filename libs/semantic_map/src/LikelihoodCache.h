@@ -46,8 +46,8 @@ struct CachedConverter {
   labeled_cloud::ScanConverter converter;
 };
 
-/** Keeps the scan of the observation whose likelihood was asked for last: particle filters ask for
- * it at many poses, some of them from several threads. */
+/** Keeps the scan of the observation whose likelihood was asked for last. Particle filters ask at
+ * many poses, some from several threads. */
 class LikelihoodCache {
  public:
   /** The observation's scan; null if it cannot be used. The reason goes to the logger as a warning,

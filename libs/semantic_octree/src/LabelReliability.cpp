@@ -9,8 +9,8 @@ using semantic_types::ClassId;
 namespace {
 
 constexpr double kStep = 1.0 / 64;
-/** Where a border crosses a cell, labels that are right disagree, and many more of them say no
- * more: without any correlation, cells would be too sure. */
+/** Where a border crosses a cell, right labels disagree, and more of them say no more. Without any
+ * correlation, cells would be too sure. */
 constexpr double kLeastCorrelation = 0.02;
 /** Labels that agree as the parameters say, before any are seen. */
 constexpr double kPriorLabels = 1000;

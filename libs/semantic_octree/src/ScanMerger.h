@@ -20,8 +20,8 @@ struct ScanCube {
 /** Carries a scan's voxels into a subtree, in one thread.
  *
  * The tree is descended once per tile of 8 x 8 x 8 voxels. On the way up each inner node above a
- * change is pruned or recomputed once. One leaf of the tree that the scan saw free as a whole gets
- * one update: the values of updating its voxels one by one and pruning. */
+ * change is pruned or recomputed once. A leaf of the tree that the scan saw free as a whole gets
+ * one update, with the values of single voxels' updates and pruning. */
 class ScanMerger {
  public:
   /** \param rule the target's, for this scan's labels \param thread number of the thread that it
@@ -53,8 +53,8 @@ class ScanMerger {
   Units m_lowest;  ///< see BlockFusion
 };
 
-/** Merges a scan into the whole tree. The cubes of one level are shared among the threads, then the
- * nodes above them are finished; the result does not depend on the number of threads. */
+/** Merges a scan into the whole tree. The threads share the cubes of one level, then the nodes
+ * above are finished. The result does not depend on the number of threads. */
 void mergeScan(const MergeTarget& target, const Scan& scan, int threads);
 
 }  // namespace semantic_octree

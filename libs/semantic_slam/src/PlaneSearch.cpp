@@ -16,9 +16,9 @@ constexpr int kBest = 255;
 /** A point is blurred by a Gaussian of so many cells, and drawn to twice that. */
 constexpr double kBlur = 1.2;
 constexpr int kReach = 3;
-/** If more than one square in so many may hold a fit, the next finer level is searched in rows,
- * where a square takes less time. Below the finest level that is looked at as a whole there would
- * be too many to remember. */
+/** If more than one square in so many may fit, the next finer level is searched in rows, where a
+ * square takes less time. Below the finest level that is looked at as a whole there would be too
+ * many to remember. */
 constexpr int kRows = 16, kFinest = 2;
 /** Points whose scores 16 bits hold. */
 constexpr std::size_t kInSum = 257;

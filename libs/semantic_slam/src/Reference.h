@@ -25,8 +25,8 @@ class Reference {
 
   /** What a scan in space is compared with. */
   const std::vector<Submap>& inSpace();
-  /** What a scan of horizontal beams is compared with, in x and y alone: its points' layers of
-   * voxels, at least two, for it may lie between. */
+  /** What a scan of horizontal beams is compared with, in x and y alone: its layers of voxels, at
+   * least two, for it may lie between. */
   const std::vector<Submap>& sliceAt(const LabeledCloud& scan, const Eigen::Isometry3d& T_map_scan);
 
  private:

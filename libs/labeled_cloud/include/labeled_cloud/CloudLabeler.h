@@ -51,9 +51,9 @@ struct CloudLabelerOptions {
   void validate() const;
 };
 
-/** Gives the points of scans without labels the classes of the pixels at which cameras see them:
- * for each camera, in its picture nearest in time. How the robot moved between picture and scan is
- * taken into account. Where several cameras see a point, the picture nearest in time counts. */
+/** Gives points of scans without labels the classes of the pixels at which cameras see them, in
+ * each camera's picture nearest in time. How the robot moved between picture and scan is taken into
+ * account. Where several cameras see a point, the picture nearest in time counts. */
 class CloudLabeler {
  public:
   /** The trajectory must outlive the labeler.

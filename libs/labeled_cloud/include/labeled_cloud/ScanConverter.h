@@ -116,8 +116,8 @@ struct ScanConverterOptions {
   /** Depth images: one point for each block of this many pixels squared, the block's nearest; it
    * keeps the label of its own pixel. */
   int decimation = 1;
-  /** Depth images: leave out pixels between a surface in front and one behind that lie on neither,
-   * farther from both than this share of their depth. 0: keep all. */
+  /** Depth images: leave out pixels between a front and a rear surface, farther from both than this
+   * share of their depth. 0: keep all. */
   double flyingPixelThreshold = 0;
   /** Depth images with labels in a color image of another camera, see visiblePixels(). Without a
    * name in files. */

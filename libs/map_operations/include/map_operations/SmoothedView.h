@@ -53,8 +53,8 @@ class SmoothedView {
   /** \throw std::invalid_argument bad options. */
   explicit SmoothedView(const SemanticOcTree& map, const SmoothingOptions& options = {});
 
-  /** As SemanticOcTree::query(), except that a voxel that is free or unknown may have a likeliest
-   * class, too: the one it would have if it were occupied. */
+  /** As SemanticOcTree::query(), but free and unknown voxels may have a likeliest class, too: the
+   * one they would have if occupied. */
   CellState query(const octomap::OcTreeKey& key) const;
   /** Asks the voxel that contains a point (meters, map frame). */
   CellState query(double x, double y, double z) const;

@@ -75,8 +75,8 @@ class FreshTiles {
   void remove(const Tile& tile) { m_tiles.erase(tile); }
   /** All cells look otherwise from now on. */
   void clear() { m_tiles.clear(); }
-  /** What is in some boxes has changed: takes out all tiles that show it, or the sides of cells
-   * next to it, and perhaps others nearby. */
+  /** What is in some boxes has changed: takes out all tiles that show it or its neighbors' sides,
+   * and perhaps others nearby. */
   void remove(const std::vector<KeyBox>& boxes);
 
  private:

@@ -8,11 +8,11 @@
 
 namespace semantic_driving {
 
-/** Drives a path: MRPT's reactive navigator around what stands in the way where that can (forward,
- * and not to an exact pose), the tracker everywhere else. Whatever either of them wants, the
- * vehicle does not go where it could not stop before an obstacle. It lets people pass
- * (separationSpeed()), and steps aside where somebody walks into it as it stands. Acceleration and
- * steering change as fast as DriveOptions say, at most. */
+/** Drives a path: MRPT's reactive navigator around what stands in the way (forward, not to an exact
+ * pose), else the tracker. Whatever either of them wants, the vehicle does not go where it could
+ * not stop before an obstacle. It lets people pass (separationSpeed()), and steps aside where
+ * somebody walks into it as it stands. Acceleration and steering change as fast as DriveOptions
+ * say, at most. */
 class DriveController {
  public:
   /** \throw std::exception bad options, or what the reactive navigator does not like. */

@@ -45,8 +45,8 @@ struct DriveOptions {
   double braking() const { return kBrakingShare * maxAcceleration; }
   /** How fast the steering turns: change of the path's curvature, 1/m per second. */
   double steeringRate() const;
-  /** How far ahead the way is looked at, meters: it can still stop before what it sees there, after
-   * it had room to drive around it. */
+  /** How far ahead the way is looked at, m: there is room to drive around what is there, and then
+   * still to stop. */
   double lookAhead() const;
   /** Highest speed with observations of an age, m/s. */
   double speedFor(double sensorAge) const;

@@ -15,8 +15,8 @@ struct GuideOptions {
   bool driveToNearest = false;  ///< the nearest pose that fits becomes the goal then
   double atGoal = 0.3;          ///< so near (meters) to the goal's place is there
 
-  /** Seconds for what stands in the goal's place to go away, until it is said that the goal does
-   * not fit: people move, walls do not. */
+  /** Seconds for what stands in the goal's place to go away, before the goal is said not to fit:
+   * people move, walls do not. */
   double goalPatience() const { return 5 * patience; }
   void describe(strict_files::OptionList& list);
   /** Who is there is at the goal, though not to the last centimeter. */
@@ -25,8 +25,8 @@ struct GuideOptions {
   void validate() const;
 };
 
-/** Where a path leads: nowhere, to the goal, to where to see more, out of where the vehicle must
- * not be, back along its own track. */
+/** Where a path leads: nowhere, to the goal, to a look-out, out of where the vehicle must not be,
+ * back along its own track. */
 enum class Target { None, Goal, Frontier, Recovery, Back };
 const strict_files::Choices<Target>& choicesOf(Target);
 /** "none", "goal", "frontier", "recovery" or "back". */
@@ -44,8 +44,8 @@ struct ToGoal {
 struct ToFrontier {
   std::optional<double> blockedSince;
 };
-/** On a way out of where the vehicle must not be. Blind: it does not see the ground that it stands
- * on, so the way is driven to its end, else up to where it can plan. */
+/** On a way out of where the vehicle must not be. Blind: it does not see the ground below it, so
+ * the way is driven to its end, else up to where it can plan. */
 struct Recovering {
   bool blind = false;
   std::optional<double> blockedSince;

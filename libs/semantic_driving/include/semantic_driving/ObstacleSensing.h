@@ -18,8 +18,8 @@ struct ObstacleOptions {
  * There the ground is too steep or of a forbidden class, or something occupied stands above it,
  * between the highest step and the vehicle's height.
  *
- * How high the ground is spreads from column to column, from below the vehicle on; over ground that
- * is not known the height stays as it was. The unknown is no obstacle, unless it is asked for.
+ * The ground's height spreads from column to column, from below the vehicle on. Over unknown ground
+ * it stays as it was. The unknown is no obstacle, unless it is asked for.
  * \param z height of the ground below the vehicle, meters */
 ObstaclePoints senseObstacles(const semantic_planning::SemanticPlanner& planner,
                               const mrpt::math::TPose2D& pose, double z,

@@ -60,8 +60,8 @@ class PathTracker {
   double m_progress = 0, m_offset = 0;
 };
 
-/** Where a drive wants all detail of the compressed tree: p(x) of the abstraction is 1 around the
- * vehicle and along the path ahead, and 0 elsewhere. */
+/** Where a drive wants all detail of the compressed tree: p(x) is 1 around the vehicle and along
+ * the path ahead, else 0. */
 struct FocusOptions {
   double corridor = 0;  ///< on both sides of the path ahead, meters; 0: p(x) is 1 everywhere
   double around = 0;    ///< around the vehicle, meters; 0: a Navigator takes where obstacles matter

@@ -24,8 +24,8 @@ struct TileChange {
  * A map has any number of readers, and none sees less because of another. Insertions, aging, and
  * corrections (KeyframeMap) are told as what changed. A reader is told everything, with `all` set:
  * at its first look, after clear(), and after the map took another's content (assignment, swap, a
- * folder, filling). So is one that has fallen behind: a map keeps at most 2^20 changes, 8 bytes
- * each, and nothing of what nobody has looked at yet.
+ * folder, filling). So is one that fell behind: a map keeps at most 2^20 changes, 8 bytes each, and
+ * none before anybody looked.
  *
  * A reader follows the object, wherever its content comes from; copies of a map have no readers.
  * Not thread safe: the map must not change during a call. \throw std::logic_error in all functions:

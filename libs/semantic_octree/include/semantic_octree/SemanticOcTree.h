@@ -231,9 +231,9 @@ class SemanticOcTree {
 };
 
 /** A map stays as it is while this lives: whoever would change it in another thread gets
- * std::logic_error instead, and the map is as it was. SemanticPlanner holds one whenever it looks.
- * The lock waits for nobody: who inserts and reads in two threads takes turns by a mutex of their
- * own, or has a semantic_navigation::Navigator do it. */
+ * std::logic_error instead. SemanticPlanner holds one whenever it looks. The lock waits for nobody.
+ * Who inserts and reads in two threads takes turns by an own mutex, or has a
+ * semantic_navigation::Navigator do it. */
 class ReadLock {
  public:
   /** \param map must outlive this \throw std::logic_error another thread changes it now. */

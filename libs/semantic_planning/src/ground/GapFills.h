@@ -15,9 +15,8 @@ using ScanGrid = ColumnGrid<ColumnTile>;
 /** Columns around one that tell what class it has. */
 constexpr int kReachOfClasses = 2;
 
-/** Top voxels with enough free space above. One of a forbidden class takes the class of most
- * drivable ones around it, if these are more than the forbidden: single wrong labels close no
- * road. */
+/** Top voxels with enough free space above. A forbidden one takes the class of most drivable ones
+ * around, if these outnumber the forbidden: single wrong labels close no road. */
 SurfaceTile measuredSurfaces(const ScanGrid& columns, Column tile, const GroundShape& shape);
 
 /** Directions of gap fills; the opposite ones are the same fills from their other ends. */

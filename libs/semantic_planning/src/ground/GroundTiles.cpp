@@ -203,8 +203,8 @@ void GroundTiles::recallStages(const std::vector<Column>& tiles) {
   const auto forTiles = [&boxes](int margin, const auto& f) {
     forTilesWithin(boxes, {margin, margin, margin, margin}, f);
   };
-  // Fills come and go as far as surfaces are measured; what they cross is filled again, for which
-  // fills from farther count, and these end still farther.
+  // Fills come and go as far as surfaces are measured. What they cross is filled again: fills from
+  // farther count, and end still farther.
   const int fills = kReachOfClasses + 3 * reach, surfaces = fills + reach;
   const auto make = [](auto& grid, Column tile, const auto& stage) {
     if (grid.find(tile)) return false;

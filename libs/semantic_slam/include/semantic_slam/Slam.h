@@ -19,8 +19,8 @@ using semantic_types::LabeledCloud;
 struct SensorScan {
   LabeledCloud cloud;  ///< sensor frame, meters
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
-  /** Points this far from the sensor or farther stand for beams without a return: they carve, and
-   * are no evidence of where the robot is. m */
+  /** Points this far from the sensor, m, stand for beams without a return: they carve, and are no
+   * evidence of where the robot is. */
   double emptyFrom = std::numeric_limits<double>::infinity();
   /** When each point was taken, seconds after the time of the scan; empty: all at that time. */
   std::vector<float> times = {};
@@ -72,9 +72,9 @@ class Slam {
   ~Slam();
   Slam(Slam&&) noexcept;
 
-  /** Brings the trajectory into the frame of an existing map: the first keyframe and, as with
-   * loops, another each few meters are registered to it, too. Odometry begins within some meters of
-   * where the robot is in it. The map is not needed afterwards.
+  /** Brings the trajectory into an existing map's frame: the first keyframe, and another each few
+   * meters, are registered to it, too. Odometry begins within some meters of where the robot is in
+   * it. The map is not needed afterwards.
    * \throw std::logic_error scans were added. */
   void setReference(const semantic_octree::SemanticOcTree& map);
 

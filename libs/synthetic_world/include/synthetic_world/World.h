@@ -55,8 +55,8 @@ class Terrain {
   double m_lowest, m_highest;
 };
 
-/** A line through the plane made of straight pieces and arcs that meet without a kink: the middle
- * of a road, the way of a robot. Parametrized by the length from its start, in meters. */
+/** A line of straight pieces and arcs that meet without a kink: the middle of a road, the way of a
+ * robot. Parametrized by the length from its start, in meters. */
 class Curve {
  public:
   /** Straight lines between the corners, each corner rounded.

@@ -12,8 +12,8 @@
 namespace semantic_octree {
 
 /** What changed, oldest first and numbered, for readers that each have a place of their own. What
- * all of them have read is dropped. When the log has grown long, its older half is dropped: a
- * reader that has not read it is lost, and has to look at everything. */
+ * all of them have read is dropped. When the log is long, its older half is dropped. A reader that
+ * has not read it is lost, and has to look at everything. */
 template <typename Entry>
 class ChangeLog {
   using Number = std::uint64_t;

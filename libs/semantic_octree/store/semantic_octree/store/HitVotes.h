@@ -9,8 +9,8 @@
 
 namespace semantic_octree {
 
-/** What the points that end in each hit voxel of a scan say of its class: how many name which;
- * points without a class do not vote. With soft labels, their mean.
+/** How many points that end in each hit voxel of a scan name which class. Points without a class do
+ * not vote. With soft labels, their mean.
  *
  * Voxels are known by their rank among the scan's hit voxels. The order of points leaves no trace
  * in votes. */

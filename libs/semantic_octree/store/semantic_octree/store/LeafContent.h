@@ -45,8 +45,8 @@ struct ClassLogOdds {
   ClassId id;
 };
 
-/** Keeps the likeliest of the named classes by name; the others join the rest, whose value becomes
- * the logarithm of the mean odds of its members.
+/** Keeps the likeliest named classes. The others join the rest, whose value becomes the logarithm
+ * of its members' mean odds.
  * \param rest log-odds of each of the numClasses - named.size() classes that have no name */
 Belief truncated(std::vector<ClassLogOdds> named, double rest, int numClasses);
 

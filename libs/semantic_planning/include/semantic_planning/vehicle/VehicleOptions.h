@@ -7,7 +7,7 @@
 namespace semantic_planning {
 
 /** What drives, and where it can. The frame is the vehicle's: x ahead, y to the left, the origin on
- * the ground, at the middle of the axle that does not steer. */
+ * the ground below the middle of the unsteered axle. */
 struct VehicleOptions {
   Footprint footprint;
   /** From the ground to the top, meters. What is lower than this above the ground is in the way. */
