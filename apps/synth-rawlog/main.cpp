@@ -126,7 +126,7 @@ Cli::Cli(CLI::App& app) : outputs(app) {
                  "Class table (YAML) of the labels, whose raw ids are ids of the world's classes; "
                  "without: the world's own");
   app.add_option("--truth-query", truthQuery,
-                 "Print the world's class at each point of this file (lines: x y z)")
+                 "Print what is at each point of this file (lines: x y z)")
       ->check(CLI::ExistingFile);
   addNumber(app, "--tolerance", tolerance, strict_files::atLeast(0),
             "A point of the query lies on a surface within this distance of it, m");
