@@ -83,7 +83,7 @@ std::vector<std::size_t> choosePixels(const PointGrid& grid, int decimation) {
 /** Beyond the range that an observation states; how far does not matter. */
 constexpr float kBeyond = 2;
 
-/** Of each block of pixels the first one, if it has no return. */
+/** The first pixel of each block, if it has no return. */
 std::vector<Eigen::Vector3f> emptyPixels(const CObservation3DRangeScan& observation,
                                          const PixelRays& rays, int decimation) {
   std::vector<Eigen::Vector3f> empty;

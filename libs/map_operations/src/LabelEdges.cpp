@@ -100,7 +100,7 @@ double alwaysWrong(const PlacedLabels& voxels,
     all.once += seen.once;
     all.alike += seen.alike;
   }
-  // Of the voxels beside one at a straight edge half are like it. If those beside a wrong one are
+  // At a straight edge half of the voxels beside one are like it. If those beside a wrong one are
   // not, scans err voxel by voxel, and no edge in all scans is that of a wrong place.
   const double patches = all.alike > 0 ? std::min(1.0, 2 * all.alike / (all.once + all.alike)) : 0;
   for (auto& [classes, seen] : edges) seen.always *= patches;

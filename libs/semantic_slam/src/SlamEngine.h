@@ -117,7 +117,7 @@ class SlamEngine {
   Registration match(const std::vector<Submap>& submaps, const Seen& seen,
                      const Pose& T_submap_guess, const Matrix6& prior) const;
 
-  /** Of ground, as wide as the coarse cubes that scans are registered to: along x and y. */
+  /** A column of ground (x, y), as wide as the coarse cubes that scans are registered to. */
   using Column = std::pair<double, double>;
   std::set<Column> columnsSeenFrom(std::size_t keyframe) const;
   /** What is left of the graph. \param isGone by keyframe \param now by keyframe: its number */
