@@ -50,18 +50,6 @@ ColumnBox numberComponents(Column tile, std::vector<std::size_t>& parent, Surfac
   return changed;
 }
 
-/** f(surface) for those of a column and of the eight around it. */
-template <class F>
-void forSurfacesAround(const SurfaceWindow& surfaces, Column c, F f) {
-  for (int y = c.y - 1; y <= c.y + 1; ++y)
-    for (int x = c.x - 1, columns; x <= c.x + 1; x += columns) {
-      const SurfaceTile& tile = surfaces.around({x, y});
-      columns = std::min(c.x + 2 - x, kTileEdge - (x & (kTileEdge - 1)));
-      const auto* first = tile.first.data() + indexInTile({x, y});
-      for (int i = first[0]; i < first[columns]; ++i) f(tile.surfaces[i]);
-    }
-}
-
 }  // namespace
 
 ColumnBox markComponents(Column tile, SurfaceTile& marked, const GroundShape& shape) {
@@ -123,9 +111,10 @@ ObstacleTile obstaclesIn(const SurfaceGrid& surfaces, Column tile, const GroundS
     const SurfaceRange own = surfacesAt(window, c);
     for (const Surface& s : own)
       if (!isFree(s)) heights.push_back(s.z);
-    forSurfacesAround(window, c, [&](const Surface& s) {
-      if (!surfaceNear(own, s.z, shape.step) && isFree(s)) heights.push_back(s.z);
-    });
+    for (int y = c.y - 1; y <= c.y + 1; ++y)
+      for (int x = c.x - 1; x <= c.x + 1; ++x)
+        for (const Surface& s : surfacesAt(window, {x, y}))
+          if (!surfaceNear(own, s.z, shape.step) && isFree(s)) heights.push_back(s.z);
     std::sort(heights.begin() + begin, heights.end());
     heights.erase(std::unique(heights.begin() + begin, heights.end()), heights.end());
     found.first[indexInTile(c) + 1] = static_cast<std::uint16_t>(heights.size());
