@@ -11,6 +11,7 @@
 #include <deque>
 #include <sstream>
 #include <stdexcept>
+#include <streambuf>
 
 #include "Bytes.h"
 
@@ -250,9 +251,32 @@ std::string fileOf(const SemanticOcTree& map) {
   return out.str();
 }
 
+namespace {
+
+/** Keeps the checksum of what is written to it, and nothing else. */
+class ChecksumBuffer : public std::streambuf {
+ public:
+  std::uint32_t checksum() const { return m_checksum; }
+
+ private:
+  int_type overflow(int_type c) override {
+    const char byte = traits_type::to_char_type(c);
+    return xsputn(&byte, 1), traits_type::not_eof(c);
+  }
+  std::streamsize xsputn(const char* bytes, std::streamsize n) override {
+    m_checksum = extendCrc(m_checksum, bytes, static_cast<std::size_t>(n));
+    return n;
+  }
+  std::uint32_t m_checksum = 0;
+};
+
+}  // namespace
+
 std::uint32_t checksumOf(const SemanticOcTree& map) {
-  const std::string file = fileOf(map);
-  return extendCrc(0, file.data(), file.size());
+  ChecksumBuffer file;
+  std::ostream out(&file);
+  writeTree(out, map);
+  return file.checksum();
 }
 
 std::vector<PacketContent> packetsOf(const TreeParts& parts, const PartCoder& coder,

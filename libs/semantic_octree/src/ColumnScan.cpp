@@ -1,5 +1,8 @@
 #include <semantic_octree/ColumnScan.h>
 
+#include <semantic_octree/store/MapAccess.h>
+#include <semantic_octree/store/NodeStore.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -64,11 +67,32 @@ class TileScan {
   void visit(const Node& node, Column low, int z, int size) {
     if (!overlaps(low, size)) return;
     if (node.isLeaf()) return addLeaf(node, low, z, size);
+    if (NodeStore::slotOf(node).kind == Slot::Kind::Block) return addBlock(node, low, z);
     const int half = size / 2;
     for (int i = 0; i < 8; ++i)
       if (const Node child = node.child(i))
         visit(child, {low.x + (i & 1 ? half : 0), low.y + (i & 2 ? half : 0)},
               z + (i & 4 ? half : 0), half);
+  }
+
+  /** Voxel by voxel, without a node for each. */
+  void addBlock(const Node& node, Column low, int z) {
+    const Block& block = MapAccess::store(m_map).block(NodeStore::slotOf(node));
+    for (int i = 0, corner = indexInTile(low); i < 64; ++i) {
+      if (!(block.known >> i & 1)) continue;
+      const int row = (i >> 1 & 1) + (i >> 3 & 2), column = corner + (i & 1) + (i >> 2 & 2);
+      const auto key = static_cast<std::uint16_t>(z + (i >> 2 & 1) + (i >> 4 & 2));
+      const float logOdds = fromUnits(block.values[i]);
+      if (logOdds > 0)
+        addRun(column + row * kTileEdge, {key, key, classOf(leafAt(node, i))});
+      else
+        addSpace(column + row * kTileEdge, {key, key, logOdds <= m_sure});
+    }
+  }
+
+  static Node leafAt(const Node& block, int voxel) {
+    const Node octant = block.child(voxel / 8);
+    return octant.isLeaf() ? octant : octant.child(voxel % 8);
   }
 
   void addLeaf(const Node& node, Column low, int z, int size) {

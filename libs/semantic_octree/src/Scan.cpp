@@ -34,10 +34,6 @@ void checkSizes(const LabeledCloud& cloud, int numClasses) {
       throw std::invalid_argument("labeled cloud: a class probability of " + std::to_string(q));
 }
 
-/** Beams that a thread follows at a time: their ends stay near the processor. Rays of one ring are
- * long where those of another are short, so that halves of a scan would not take equally long. */
-constexpr std::size_t kBeamsAtATime = 2048;
-
 /** Where a beam stops carving; nothing if it carves nothing. \param begin, end relative to the grid
  */
 std::optional<Eigen::Array3d> endOfFree(bool isReturn, const Eigen::Array3d& begin,
@@ -71,23 +67,23 @@ void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
                const ClassFilter<float>& filter, const InsertionOptions& options) {
   const int numClasses = filter.numClasses();
   checkSizes(cloud, numClasses);
-  const ScanBeams beams(cloud, T_map_sensor, resolution, options);
-  m_report = beams.report();
+  m_beams.set(cloud, T_map_sensor, resolution, options);
+  m_report = m_beams.report();
   m_free.resize(options.threads);
-  m_free[0].cover(beams.lowest(), beams.highest(), maxTiles(options));
-  markHits(beams, options);
-  markFree(beams, options, options.carvingMargin / resolution);
+  m_free[0].cover(m_beams.lowest(), m_beams.highest(), maxTiles(options));
+  markHits(options);
+  markFree(options, options.carvingMargin / resolution);
   summarize([&] { m_votes.count(cloud, m_endRanks, m_report.hitVoxels, numClasses); });
   m_report.labels = m_votes.agreement().explain(filter.parameters(), numClasses);
 }
 
-void Scan::markHits(const ScanBeams& beams, const InsertionOptions& options) {
+void Scan::markHits(const InsertionOptions& options) {
   const bool onePerVoxel = options.rays == InsertionOptions::Rays::EndVoxels;
   m_hits.cover(m_free[0].numTilesInAll());
   m_clippedEnds.cover(onePerVoxel ? m_free[0].numTilesInAll() : 0);
-  m_carves.assign(onePerVoxel ? beams.size() : 0, false);
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const Beam beam = beams.beam(i);
+  m_carves.assign(onePerVoxel ? m_beams.size() : 0, false);
+  for (std::size_t i = 0; i < m_beams.size(); ++i) {
+    const Beam& beam = m_beams.beam(i);
     if (beam.isReturn()) {
       const bool seen = m_hits.testAndSet(placeOf(beam));
       if (onePerVoxel) m_carves[i] = !seen;
@@ -98,23 +94,23 @@ void Scan::markHits(const ScanBeams& beams, const InsertionOptions& options) {
   m_report.hitVoxels = m_hits.rank();
 }
 
-void Scan::markFree(const ScanBeams& beams, const InsertionOptions& options, double margin) {
+void Scan::markFree(const InsertionOptions& options, double margin) {
   for (int i = 1; i < options.threads; ++i) m_free[i].coverLike(m_free[0]);
-  m_endRanks.resize(beams.size());
-  const std::size_t parts = (beams.size() + kBeamsAtATime - 1) / kBeamsAtATime;
+  m_endRanks.resize(m_beams.size());
+  const std::size_t parts = (m_beams.size() + kBeamsAtATime - 1) / kBeamsAtATime;
   shareOut(options.threads, parts, [&](int thread, std::size_t i) {
-    markFreePart(beams, i * kBeamsAtATime, m_free[thread], options, margin);
+    markFreePart(i * kBeamsAtATime, m_free[thread], options, margin);
   });
 }
 
-void Scan::markFreePart(const ScanBeams& beams, std::size_t first, ScanGrid& grid,
-                        const InsertionOptions& options, double margin) {
-  const Eigen::Array3d gridOrigin = grid.origin(), begin = beams.origin() - gridOrigin;
-  const std::size_t last = std::min(first + kBeamsAtATime, beams.size());
+void Scan::markFreePart(std::size_t first, ScanGrid& grid, const InsertionOptions& options,
+                        double margin) {
+  const Eigen::Array3d gridOrigin = grid.origin(), begin = m_beams.origin() - gridOrigin;
+  const std::size_t last = std::min(first + kBeamsAtATime, m_beams.size());
   std::vector<Eigen::Array3d> ends;
   ends.reserve(last - first);
   for (std::size_t i = first; i < last; ++i) {
-    const Beam beam = beams.beam(i);
+    const Beam& beam = m_beams.beam(i);
     m_endRanks[i] = beam.isReturn() ? m_hits.rankOf(placeOf(beam)) : HitVotes::kNowhere;
     if (!beam.isUsed() || (!m_carves.empty() && !m_carves[i])) continue;
     if (const auto end = endOfFree(beam.isReturn(), begin, beam.end - gridOrigin, options, margin))
@@ -211,7 +207,8 @@ void Scan::clear() {
 }
 
 std::size_t Scan::bytes() const {
-  std::size_t bytes = m_hits.bytes() + m_clippedEnds.bytes() + m_pyramid.bytes() + m_votes.bytes();
+  std::size_t bytes = m_beams.bytes() + m_hits.bytes() + m_clippedEnds.bytes() + m_pyramid.bytes() +
+                      m_votes.bytes();
   for (const ScanGrid& grid : m_free) bytes += grid.bytes();
   return bytes + m_endRanks.capacity() * sizeof(std::uint32_t) + m_carves.capacity() / 8;
 }

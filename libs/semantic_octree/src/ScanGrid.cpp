@@ -4,6 +4,7 @@
 #include <strict_files/TextFile.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -12,6 +13,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+
+#include "Parallel.h"
 
 namespace semantic_octree {
 namespace {
@@ -92,40 +95,99 @@ MSO_VECTORIZED unsigned countBits(const std::uint64_t* words, int numWords) {
 
 using semantic_types::LabeledCloud;
 
-ScanBeams::ScanBeams(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
-                     double resolution, const InsertionOptions& options)
-    : m_cloud(cloud),
-      m_origin(inVoxels(T_map_sensor.translation().x(), resolution),
-               inVoxels(T_map_sensor.translation().y(), resolution),
-               inVoxels(T_map_sensor.translation().z(), resolution)),
-      m_rotation(T_map_sensor.linear() / resolution),
-      m_maxRange(options.maxRange > 0 ? options.maxRange : std::numeric_limits<double>::max()),
-      m_minRange2(options.minRange * options.minRange),
-      m_maxRange2(std::min(m_maxRange * m_maxRange, std::numeric_limits<double>::max())) {
+namespace {
+
+/** What becomes of points. */
+class BeamMaker {
+ public:
+  BeamMaker(const Eigen::Array3d& origin, const Eigen::Isometry3d& T_map_sensor, double resolution,
+            const InsertionOptions& options)
+      : m_origin(origin),
+        m_rotation(T_map_sensor.linear() / resolution),
+        m_maxRange(options.maxRange > 0 ? options.maxRange : std::numeric_limits<double>::max()),
+        m_minRange2(options.minRange * options.minRange),
+        m_maxRange2(std::min(m_maxRange * m_maxRange, std::numeric_limits<double>::max())) {}
+
+  Beam to(const Eigen::Vector3f& point) const {
+    const Eigen::Vector3d p = point.cast<double>();
+    const double range2 = p.x() * p.x() + (p.y() * p.y() + p.z() * p.z());
+    if (range2 >= m_minRange2 && range2 <= m_maxRange2)
+      return beamTo(endOf(p, 1), Beam::Kind::Return);
+    if (!std::isfinite(range2)) return {Beam::Kind::NotFinite, m_origin};
+    if (range2 < m_minRange2) return {Beam::Kind::Near, m_origin};
+    return beamTo(endOf(p, m_maxRange / std::sqrt(range2)), Beam::Kind::Clipped);
+  }
+
+ private:
+  Eigen::Array3d endOf(const Eigen::Vector3d& p, double scale) const {
+    Eigen::Array3d end;
+    for (int i = 0; i < 3; ++i)
+      end[i] = m_origin[i] +
+               (m_rotation(i, 0) * p.x() + (m_rotation(i, 1) * p.y() + m_rotation(i, 2) * p.z())) *
+                   scale;
+    return end;
+  }
+  static Beam beamTo(const Eigen::Array3d& end, Beam::Kind kind) {
+    return {ScanBeams::insideMap(end) ? kind : Beam::Kind::Outside, end};
+  }
+
+  Eigen::Array3d m_origin;
+  Eigen::Matrix3d m_rotation;                   ///< meters to voxels, too
+  double m_maxRange, m_minRange2, m_maxRange2;  ///< meters; squared
+};
+
+/** What beams come to. */
+struct BeamSum {
+  Eigen::Array3d lowest, highest;
+  std::array<std::size_t, 5> numBeams{};  ///< of each kind
+
+  void add(const Beam& b) {
+    ++numBeams[static_cast<std::size_t>(b.kind)];
+    if (b.isUsed()) lowest = lowest.min(b.end), highest = highest.max(b.end);
+  }
+  void add(const BeamSum& o) {
+    lowest = lowest.min(o.lowest), highest = highest.max(o.highest);
+    for (std::size_t i = 0; i < numBeams.size(); ++i) numBeams[i] += o.numBeams[i];
+  }
+};
+
+void checkSensor(const Eigen::Isometry3d& T_map_sensor, const Eigen::Array3d& origin,
+                 double resolution) {
   if (!T_map_sensor.matrix().allFinite())
     throw std::invalid_argument("the sensor's pose has numbers that are not finite");
-  if (!insideMap(m_origin)) {
-    const Eigen::Array3d sensor =
-        (100 * T_map_sensor.translation().array()).round() / 100;  // to the cm
-    std::ostringstream what;
-    const strict_files::ClassicNumbers classic(what);
-    what << std::setprecision(10) << "sensor at (" << sensor.x() << ", " << sensor.y() << ", "
-         << sensor.z() << ") m is outside the map, which reaches " << kKeyOfOrigin * resolution
-         << " m from its origin: subtract the same offset from all poses";
-    throw std::out_of_range(what.str());
-  }
-  std::size_t numBeams[5] = {};
-  Eigen::Array3d lowest = m_origin, highest = m_origin;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Beam b = beam(i);
-    ++numBeams[static_cast<int>(b.kind)];
-    if (!b.isUsed()) continue;
-    lowest = lowest.min(b.end);
-    highest = highest.max(b.end);
-  }
-  m_lowest = voxelOf(lowest);
-  m_highest = voxelOf(highest);
-  const auto number = [&](Beam::Kind kind) { return numBeams[static_cast<int>(kind)]; };
+  if (ScanBeams::insideMap(origin)) return;
+  const Eigen::Array3d sensor =
+      (100 * T_map_sensor.translation().array()).round() / 100;  // to the cm
+  std::ostringstream what;
+  const strict_files::ClassicNumbers classic(what);
+  what << std::setprecision(10) << "sensor at (" << sensor.x() << ", " << sensor.y() << ", "
+       << sensor.z() << ") m is outside the map, which reaches " << kKeyOfOrigin * resolution
+       << " m from its origin: subtract the same offset from all poses";
+  throw std::out_of_range(what.str());
+}
+
+}  // namespace
+
+void ScanBeams::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+                    double resolution, const InsertionOptions& options) {
+  for (int axis = 0; axis < 3; ++axis)
+    m_origin[axis] = inVoxels(T_map_sensor.translation()[axis], resolution);
+  checkSensor(T_map_sensor, m_origin, resolution);
+  m_beams.resize(cloud.size());
+  const BeamMaker maker(m_origin, T_map_sensor, resolution, options);
+  const BeamSum none{m_origin, m_origin};
+  std::vector<BeamSum> parts((cloud.size() + kBeamsAtATime - 1) / kBeamsAtATime, none);
+  shareOut(options.threads, parts.size(), [&](int, std::size_t part) {
+    const std::size_t first = part * kBeamsAtATime, last = first + kBeamsAtATime;
+    for (std::size_t i = first; i < std::min(last, cloud.size()); ++i)
+      parts[part].add(m_beams[i] = maker.to(cloud.points[i]));
+  });
+  BeamSum all = none;
+  for (const BeamSum& part : parts) all.add(part);
+  m_lowest = voxelOf(all.lowest);
+  m_highest = voxelOf(all.highest);
+  const auto number = [&](Beam::Kind kind) { return all.numBeams[static_cast<std::size_t>(kind)]; };
+  m_report = InsertionReport();
   m_report.points = cloud.size();
   m_report.skippedNotFinite = number(Beam::Kind::NotFinite);
   m_report.skippedNear = number(Beam::Kind::Near);

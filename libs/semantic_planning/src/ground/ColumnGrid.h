@@ -112,6 +112,9 @@ struct ColumnBox {
 
   bool empty() const { return low.x > high.x; }
   Column tile() const { return tileOf(low); }
+  bool overlaps(const ColumnBox& o) const {
+    return low.x <= o.high.x && high.x >= o.low.x && low.y <= o.high.y && high.y >= o.low.y;
+  }
   void add(Column c) { add({c, c}); }
   void add(const ColumnBox& o) {
     low = {std::min(low.x, o.low.x), std::min(low.y, o.low.y)};

@@ -19,13 +19,14 @@ class GapFillSearch {
         m_measured(measured, tile, reachOfGapFills(shape)),
         m_shape(shape) {}
 
-  std::vector<GapFill> from(Column tile) {
+  GapFillTile from(Column tile) {
     forColumnsOf(tile, [&](Column c) {
       const SurfaceRange column = surfacesAt(m_measured, c);
       if (column.empty()) return;
       for (int d = 0; d < int(kDirections.size()); ++d)
         for (const Surface& s : column) lookAcross(c, s, d);
     });
+    m_found.fills.shrink_to_fit();
     return std::move(m_found);
   }
 
@@ -46,9 +47,14 @@ class GapFillSearch {
       if (!other) continue;
       fill.otherZ = other->z;
       fill.otherClass = other->classId;
-      if (isOverHole(fill)) m_found.push_back(fill);
+      if (isOverHole(fill)) add(fill);
       return;
     }
+  }
+
+  void add(const GapFill& fill) {
+    m_found.fills.push_back(fill);
+    m_found.box.add(fill.column(1)), m_found.box.add(fill.column(fill.columns - 1));
   }
 
   /** Whether a fill cannot go on over the column that it has come to, however high its other end
@@ -80,7 +86,7 @@ class GapFillSearch {
   const TileWindow<ColumnTile> m_columns;
   const SurfaceWindow m_measured;
   const GroundShape& m_shape;
-  std::vector<GapFill> m_found;
+  GapFillTile m_found;
 };
 
 /** Classes of what is around a surface, within a step in height. */
@@ -153,8 +159,8 @@ SurfaceTile measuredSurfaces(const ScanGrid& columns, Column tile, const GroundS
   return measured;
 }
 
-std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
-                                  const GroundShape& shape) {
+GapFillTile gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
+                         const GroundShape& shape) {
   return GapFillSearch(columns, measured, tile, shape).from(tile);
 }
 
@@ -190,9 +196,9 @@ std::vector<Offer> offersTo(Column tile, const GapFillGrid& grid, const GroundSh
   const int reach = reachOfGapFills(shape);
   const ColumnBox box{firstColumnOf(tile), lastColumnOf(tile)};
   for (const Column& from : tilesWithin({box}, {reach, reach, reach, 0})) {
-    const std::vector<GapFill>* fills = grid.find(from);
-    if (!fills) continue;
-    for (const GapFill& f : *fills) {
+    const GapFillTile* found = grid.find(from);
+    if (!found || !found->box.overlaps(box)) continue;
+    for (const GapFill& f : found->fills) {
       const auto [low, high] = columnsInTile(f, tile);
       const colored_graph::Rank rank = shape.ranks[f.classId];
       const bool known = f.width() <= shape.fillGap ||

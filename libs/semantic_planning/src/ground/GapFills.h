@@ -43,7 +43,12 @@ struct GapFill {
   ClassId nearerClass(int i) const { return 2 * i <= columns ? classId : otherClass; }
 };
 
-using GapFillGrid = ColumnGrid<std::vector<GapFill>>;
+/** Fills that begin in one tile, and what they cross. */
+struct GapFillTile {
+  std::vector<GapFill> fills;
+  ColumnBox box;
+};
+using GapFillGrid = ColumnGrid<GapFillTile>;
 
 /** How many columns a fill goes from its first end, at most. */
 inline int reachOfGapFills(const GroundShape& shape) {
@@ -52,8 +57,8 @@ inline int reachOfGapFills(const GroundShape& shape) {
 
 /** The fills whose first end is in a tile. Each leads from a surface that lacks a neighbor to the
  * next one at about its height. Nothing stands in between, and no drop was seen below. */
-std::vector<GapFill> gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
-                                  const GroundShape& shape);
+GapFillTile gapFillsFrom(const ScanGrid& columns, const SurfaceGrid& measured, Column tile,
+                         const GroundShape& shape);
 
 /** The measured surfaces of a tile with those that fill its holes: of fills at about one height
  * the shortest. Without ghosts: surfaces below others, see ColumnTile. \param fills of the tile and

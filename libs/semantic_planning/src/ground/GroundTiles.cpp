@@ -126,12 +126,10 @@ void keepMarks(const SurfaceTile& before, SurfaceTile& tile) {
 
 void GroundTiles::read(const std::vector<Column>& tiles) {
   constexpr std::size_t kManyTiles = 4 * kSquareEdge * kSquareEdge;
-  if (tiles.size() < kManyTiles) {
+  if (tiles.size() < kManyTiles)
     finished(updateSurfaces(tiles));
-  } else {
+  else
     readWithin(tiles);
-    for (const Column& tile : tiles) findObstacles(tile);
-  }
   forgetStages();
 }
 
@@ -191,6 +189,7 @@ void GroundTiles::forgetStages() {
   m_columns = {};
   m_measured = {};
   m_fills = {};
+  m_obstacles = {};
   m_numRead = 0;
 }
 
@@ -222,6 +221,11 @@ void GroundTiles::recallStages(const std::vector<Column>& tiles) {
   forTiles(fills, [&](Column t) {
     make(m_fills, t,
          [this](Column tile) { return gapFillsFrom(m_columns, m_measured, tile, m_shape); });
+  });
+  // Beside what becomes an obstacle the clearance of whole tiles is measured anew.
+  const int slopes = fills + m_shape.baseline;
+  forTiles(slopes + 1 + 2 * m_shape.largestClearance + kTileEdge, [&](Column t) {
+    make(m_obstacles, t, [this](Column tile) { return obstaclesIn(m_surfaces, tile, m_shape); });
   });
 }
 
@@ -287,9 +291,8 @@ SurfaceTile GroundTiles::measured(Column tile) const {
 }
 
 void GroundTiles::findFills(Column tile) {
-  std::vector<GapFill> found = gapFillsFrom(m_columns, m_measured, tile, m_shape);
-  found.shrink_to_fit();
-  if (!found.empty() || m_fills.find(tile)) m_fills.at(tile) = std::move(found);
+  GapFillTile found = gapFillsFrom(m_columns, m_measured, tile, m_shape);
+  if (!found.fills.empty() || m_fills.find(tile)) m_fills.at(tile) = std::move(found);
 }
 
 ColumnBox GroundTiles::fill(Column tile) {

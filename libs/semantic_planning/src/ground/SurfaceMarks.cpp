@@ -133,17 +133,41 @@ int levelTolerance(int columns, const GroundShape& shape) {
   return std::min(shape.height, 2 * shape.step + 1 + static_cast<int>(shape.rise * columns));
 }
 
-/** The obstacle of a column at about height z; or null. */
-const std::uint16_t* obstacleAt(const TileWindow<ObstacleTile>& obstacles, Column c, int z,
-                                int tolerance) {
-  const ObstacleTile& tile = obstacles.around(c);
-  const int column = indexInTile(c);
-  const auto* found = std::find_if(tile.begin(column), tile.end(column),
-                                   [&](int height) { return std::abs(height - z) <= tolerance; });
-  return found == tile.end(column) ? nullptr : found;
-}
-
 }  // namespace
+
+/** Obstacles around a tile. Most columns have none, which is known at once. */
+class ClearanceMeter::Around {
+ public:
+  Around(const ObstacleGrid& obstacles, Column tile, int reach)
+      : m_tiles(obstacles, tile, reach), m_edge(kTileEdge + 2 * reach) {
+    const Column first = firstColumnOf(tile);
+    m_low = {first.x - reach, first.y - reach};
+    for (int y = m_low.y; y < m_low.y + m_edge; ++y)
+      for (int x = m_low.x; x < m_low.x + m_edge; ++x)
+        m_any.push_back(beginAt({x, y}) != endAt({x, y}));
+  }
+
+  /** Whether a column has any; the next row's is an edge farther on. */
+  const char* any(Column c) const {
+    return m_any.data() + (c.y - m_low.y) * m_edge + c.x - m_low.x;
+  }
+
+  /** That of a column at about height z; or null. */
+  const std::uint16_t* at(Column c, int z, int tolerance) const {
+    const auto* found = std::find_if(beginAt(c), endAt(c),
+                                     [&](int height) { return std::abs(height - z) <= tolerance; });
+    return found == endAt(c) ? nullptr : found;
+  }
+
+ private:
+  const std::uint16_t* beginAt(Column c) const { return m_tiles.around(c).begin(indexInTile(c)); }
+  const std::uint16_t* endAt(Column c) const { return m_tiles.around(c).end(indexInTile(c)); }
+
+  const TileWindow<ObstacleTile> m_tiles;
+  Column m_low;
+  int m_edge;
+  std::vector<char> m_any;
+};
 
 ClearanceMeter::ClearanceMeter(const GroundShape& shape) : m_farthest(shape.largestClearance) {
   const int farthest2 = m_farthest * m_farthest;
@@ -151,17 +175,20 @@ ClearanceMeter::ClearanceMeter(const GroundShape& shape) : m_farthest(shape.larg
     for (int x = -m_farthest; x <= m_farthest; ++x) {
       const int dx = between(x, 0), dy = between(y, 0);
       if (dx * dx + dy * dy < farthest2)
-        m_places.push_back({x, y, dx * dx + dy * dy, levelTolerance(std::max(dx, dy) + 1, shape)});
+        m_places.push_back({x, y, dx * dx + dy * dy, levelTolerance(std::max(dx, dy) + 1, shape),
+                            y * (kTileEdge + 2 * m_farthest) + x});
     }
   std::stable_sort(m_places.begin(), m_places.end(),
                    [](const Place& l, const Place& r) { return l.clearance2 < r.clearance2; });
 }
 
-std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(
-    const TileWindow<ObstacleTile>& around, Column c, int z) const {
+std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(const Around& around, Column c,
+                                                                int z) const {
+  const char* const any = around.any(c);
   for (const Place& p : m_places) {
+    if (!any[p.offset]) continue;
     const Column at{c.x + p.x, c.y + p.y};
-    if (const auto* height = obstacleAt(around, at, z, p.tolerance))
+    if (const auto* height = around.at(at, z, p.tolerance))
       return Obstacle{at, *height, p.clearance2};
   }
   return std::nullopt;
@@ -169,14 +196,14 @@ std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(
 
 std::optional<ClearanceMeter::Obstacle> ClearanceMeter::nearest(const ObstacleGrid& obstacles,
                                                                 Column c, int z) const {
-  return nearest(TileWindow<ObstacleTile>(obstacles, tileOf(c), m_farthest), c, z);
+  return nearest(Around(obstacles, tileOf(c), m_farthest), c, z);
 }
 
 ColumnBox ClearanceMeter::measure(const ObstacleGrid& obstacles, Column tile,
                                   SurfaceTile& measured) const {
   ColumnBox changed;
   if (measured.surfaces.empty()) return changed;
-  const TileWindow<ObstacleTile> around(obstacles, tile, m_farthest);
+  const Around around(obstacles, tile, m_farthest);
   forSurfacesOf(tile, measured, [&](Column c, std::size_t i) {
     Surface& s = measured.surfaces[i];
     const auto obstacle = nearest(around, c, s.z);

@@ -64,9 +64,11 @@ class ClearanceMeter {
     int x, y;
     int clearance2;
     int tolerance;  ///< how far ground may have gone up or down on the way
+    int offset;     ///< in Around
   };
 
-  std::optional<Obstacle> nearest(const TileWindow<ObstacleTile>& around, Column c, int z) const;
+  class Around;
+  std::optional<Obstacle> nearest(const Around& around, Column c, int z) const;
 
   int m_farthest;
   std::vector<Place> m_places;  ///< nearest first

@@ -163,11 +163,11 @@ class Scan {
  private:
   /** Tiles whose bits, and what is noted of them, fit into InsertionOptions::maxScanMemory. */
   static std::size_t maxTiles(const InsertionOptions& options);
-  void markHits(const ScanBeams& beams, const InsertionOptions& options);
-  void markFree(const ScanBeams& beams, const InsertionOptions& options, double margin);
+  void markHits(const InsertionOptions& options);
+  void markFree(const InsertionOptions& options, double margin);
   /** Follows some beams, and notes in which voxels they end. */
-  void markFreePart(const ScanBeams& beams, std::size_t first, ScanGrid& grid,
-                    const InsertionOptions& options, double margin);
+  void markFreePart(std::size_t first, ScanGrid& grid, const InsertionOptions& options,
+                    double margin);
   /** \param beside what another thread may do meanwhile, which does not touch tiles' bits */
   void summarize(const std::function<void()>& beside);
   /** \return the voxels of a row of tiles that were seen free */
@@ -178,6 +178,7 @@ class Scan {
   }
 
   InsertionReport m_report;
+  ScanBeams m_beams;
   std::vector<ScanGrid> m_free;  ///< one per thread, united in the first
   HitTiles m_hits;
   HitTiles m_clippedEnds;      ///< of beams beyond the range, to carve each end voxel once

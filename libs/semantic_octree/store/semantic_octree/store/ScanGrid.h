@@ -32,25 +32,29 @@ struct Beam {
   bool isReturn() const { return kind == Kind::Return; }
 };
 
-/** A scan's beams in the map's frame. They are computed when asked for, always the same: to keep
- * them would take more memory than all else that is known of a scan. */
+/** Beams that a thread looks at at a time: their ends stay near the processor. Rays of one ring are
+ * long where those of another are short, so that halves of a scan would not take equally long. */
+constexpr std::size_t kBeamsAtATime = 2048;
+
+/** A scan's beams in the map's frame. */
 class ScanBeams {
  public:
-  /** \param cloud must outlive this
+  /** Replaces them, and keeps the buffer.
    * \throw std::out_of_range the sensor lies outside the map. */
-  ScanBeams(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
-            double resolution, const InsertionOptions& options);
+  void set(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
+           double resolution, const InsertionOptions& options);
 
-  std::size_t size() const { return m_cloud.size(); }
+  std::size_t size() const { return m_beams.size(); }
   /** The sensor, voxel units. */
   const Eigen::Array3d& origin() const { return m_origin; }
-  Beam beam(std::size_t point) const;
+  const Beam& beam(std::size_t point) const { return m_beams[point]; }
 
   /** Box of voxels that the beams cross, inclusive. */
   const VoxelIndex& lowest() const { return m_lowest; }
   const VoxelIndex& highest() const { return m_highest; }
   /** How many points became what. */
   const InsertionReport& report() const { return m_report; }
+  std::size_t bytes() const { return m_beams.capacity() * sizeof(Beam); }
 
   static VoxelIndex voxelOf(const Eigen::Array3d& u) {
     return {floorOf(u.x()), floorOf(u.y()), floorOf(u.z())};
@@ -60,39 +64,11 @@ class ScanBeams {
   }
 
  private:
-  Eigen::Array3d endOf(const Eigen::Vector3d& p, double scale) const;
-  static Beam beamTo(const Eigen::Array3d& end, Beam::Kind kind);
-
-  const semantic_types::LabeledCloud& m_cloud;
   Eigen::Array3d m_origin;
-  Eigen::Matrix3d m_rotation;                   ///< meters to voxels, too
-  double m_maxRange, m_minRange2, m_maxRange2;  ///< meters; squared
+  std::vector<Beam> m_beams;
   VoxelIndex m_lowest, m_highest;
   InsertionReport m_report;
 };
-
-inline Beam ScanBeams::beam(std::size_t point) const {
-  const Eigen::Vector3d p = m_cloud.points[point].cast<double>();
-  const double range2 = p.x() * p.x() + (p.y() * p.y() + p.z() * p.z());
-  if (range2 >= m_minRange2 && range2 <= m_maxRange2)
-    return beamTo(endOf(p, 1), Beam::Kind::Return);
-  if (!std::isfinite(range2)) return {Beam::Kind::NotFinite, m_origin};
-  if (range2 < m_minRange2) return {Beam::Kind::Near, m_origin};
-  return beamTo(endOf(p, m_maxRange / std::sqrt(range2)), Beam::Kind::Clipped);
-}
-
-inline Eigen::Array3d ScanBeams::endOf(const Eigen::Vector3d& p, double scale) const {
-  Eigen::Array3d end;
-  for (int i = 0; i < 3; ++i)
-    end[i] =
-        m_origin[i] +
-        (m_rotation(i, 0) * p.x() + (m_rotation(i, 1) * p.y() + m_rotation(i, 2) * p.z())) * scale;
-  return end;
-}
-
-inline Beam ScanBeams::beamTo(const Eigen::Array3d& end, Beam::Kind kind) {
-  return {insideMap(end) ? kind : Beam::Kind::Outside, end};
-}
 
 /** One bit per voxel of a box of space, in tiles of 8 x 8 x 8 voxels. Inside a tile the bits are in
  * Morton order (x lowest): a 64-bit word is a 4 x 4 x 4 block, a byte the eight children of a node.
