@@ -32,8 +32,8 @@ endfunction()
 # Programs read their command line and let the libraries work: their own code is optimized little.
 set(mso_once_options $<$<CONFIG:Release>:-O1>)
 
-# mso_add_app(NAME [STUDY] SOURCES ... [DEPENDS ...]): an executable of apps/NAME. A STUDY, which measures this project
-# rather than using it, is not installed; others are, with their manual page.
+# mso_add_app(NAME [STUDY] SOURCES ... [DEPENDS ...]): an executable of apps/NAME. A STUDY (test/benchmark/NAME), which
+# measures this project rather than using it, is not installed; others are, with their manual page.
 function(mso_add_app name)
   cmake_parse_arguments(ARG "STUDY" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

@@ -1,5 +1,4 @@
 // Drives a robot through a synthetic world and writes what its labeled sensors see.
-#include <map_pictures/MapPictures.h>
 #include <mrpt/poses/CPose3D.h>
 #include <semantic_types/ClassTable.h>
 #include <strict_files/StrictYaml.h>
@@ -13,8 +12,6 @@
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
-#include <iostream>
-#include <map>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -35,7 +32,7 @@ namespace {
 
 /** The command line. */
 struct Cli {
-  std::filesystem::path output;  // the rawlog; empty if only the truth or a picture is wanted
+  std::filesystem::path output;  // the rawlog
   std::string scene = "village";
   std::uint64_t seed = 1;
   double hills = 1;  // factor
@@ -58,13 +55,11 @@ struct Cli {
   label_noise::LabelNoise::Kind labelNoiseKind = label_noise::LabelNoise::Kind::Points;
 
   std::filesystem::path classes;  // table whose raw ids are the world's classes; empty: the world's
-  std::filesystem::path truthQuery, picture;
-  double tolerance = 0.05;  // m
 
   Outputs outputs;
 
   explicit Cli(CLI::App& app);
-  /** Brings the parsed noise to the sensors. \throw CLI::RequiredError nothing is to be written. */
+  /** Brings the parsed noise to the sensors. */
   void complete();
   bool wantsCamera() const { return sensor != "lidar"; }
   bool wantsLidar() const { return sensor != "camera"; }
@@ -112,9 +107,7 @@ OptionList sensorOptions(Cli& cli) {
 }
 
 Cli::Cli(CLI::App& app) : outputs(app) {
-  outputs.add(app, output, "FILE", "Rawlog to write");
-  outputs.addOther(
-      app.add_option("--picture", picture, "Write the world from above, colors and classes (PNG)"));
+  outputs.add(app, output, "FILE", "Rawlog to write")->required();
   addWords(app.add_option("--scene", scene, "Which world"), synthetic_world::sceneNames())
       ->capture_default_str();
   app.add_option("--frames", frames, "Number of frames; by default one round of the route")
@@ -125,18 +118,11 @@ Cli::Cli(CLI::App& app) : outputs(app) {
   app.add_option("--classes", classes,
                  "Class table (YAML) of the labels, whose raw ids are ids of the world's classes; "
                  "without: the world's own");
-  app.add_option("--truth-query", truthQuery,
-                 "Print what is at each point of this file (lines: x y z)")
-      ->check(CLI::ExistingFile);
-  addNumber(app, "--tolerance", tolerance, strict_files::atLeast(0),
-            "A point of the query lies on a surface within this distance of it, m");
   ::addOptions(app, driveOptions(*this), "World and drive");
   ::addOptions(app, sensorOptions(*this), "Sensors");
 }
 
 void Cli::complete() {
-  if (output.empty() && truthQuery.empty() && picture.empty())
-    throw CLI::RequiredError("--output, --picture or --truth-query");
   if (labelNoiseKind != label_noise::LabelNoise::Kind::Points)
     labelNoise = std::exchange(noise.label, 0);
   camera.noise = lidar.noise = noise;
@@ -311,53 +297,11 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
           << cli.speed * k / cli.rate << " m of way\n";
 }
 
-/** Colors on the left, classes on the right. */
-void writePicture(const Cli& cli, const WorldClasses& classes,
-                  const synthetic_world::World& world) {
-  const synthetic_world::TopView view = renderTopView(world, 0.15);
-  const int size = view.color.width;
-  synthetic_world::Image<synthetic_world::Color> both(2 * size, size);
-  for (int row = 0; row < size; ++row)
-    for (int column = 0; column < size; ++column) {
-      const synthetic_world::ClassId id = classes.of(view.labels.at(row, column));
-      both.at(row, column) = view.color.at(row, column);
-      if (id != synthetic_world::kNoClass) both.at(row, size + column) = classes.table().color(id);
-    }
-  map_pictures::savePicture(pictureOf(both), cli.picture);
-}
-
-/** Prints for each line "x y z" of the file: x y z, state, class id, class name.
- * \throw std::runtime_error naming the line that is not three numbers. */
-void answerTruth(const Cli& cli, const WorldClasses& classes, const synthetic_world::World& world) {
-  static const std::map<synthetic_world::PointTruth::State, const char*> kNames = {
-      {synthetic_world::PointTruth::State::Free, "free"},
-      {synthetic_world::PointTruth::State::Surface, "surface"},
-      {synthetic_world::PointTruth::State::Inside, "inside"},
-      {synthetic_world::PointTruth::State::Underground, "underground"}};
-  for (const strict_files::TextLine& line : strict_files::readLines(cli.truthQuery)) {
-    const std::vector<double> p = numbersOf(line, 3);
-    const synthetic_world::PointTruth truth = world.at({p[0], p[1], p[2]}, cli.tolerance);
-    const ClassId id = classes.of(truth.id);
-    std::cout << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << kNames.at(truth.state) << ' ' << +id
-              << ' ' << (id == synthetic_world::kNoClass ? "-" : classes.table().name(id)) << '\n';
-  }
-}
-
-void checkOutputs(const Cli& cli) {
-  std::vector<std::filesystem::path> files = {cli.picture};
-  if (!cli.output.empty())
-    files.insert(files.end(),
-                 {cli.output, beside(cli.output, ".tum"), beside(cli.output, ".truth.yaml")});
-  cli.outputs.check(files);
-}
-
 int run(const Cli& cli) {
-  checkOutputs(cli);
+  cli.outputs.check({cli.output, beside(cli.output, ".tum"), beside(cli.output, ".truth.yaml")});
   const WorldClasses classes(cli.classes);
   synthetic_world::Scene scene = synthetic_world::makeScene(cli.scene, cli.seed, cli.hills);
-  if (!cli.output.empty()) writeRawlog(cli, classes, scene);
-  if (!cli.picture.empty()) writePicture(cli, classes, scene.world);
-  if (!cli.truthQuery.empty()) answerTruth(cli, classes, scene.world);
+  writeRawlog(cli, classes, scene);
   return 0;
 }
 

@@ -250,7 +250,6 @@ TEST_F(UserData, otherOutputsAreNotReplacedEither) {
   writeMapping("a.rawlog");
   folder.write("labeled.rawlog", "precious");
   folder.write("preview/000000.png", "precious");
-  folder.write("p.png", "precious");
   const auto mapping = [](const Words& more) {
     return joined({"--config", "config.ini", "-o", "out", "a.rawlog"}, more);
   };
@@ -263,7 +262,6 @@ TEST_F(UserData, otherOutputsAreNotReplacedEither) {
                   "classes.yaml: is an input", {"classes.yaml"});
   expectUntouched(program, mapping({"--preview", "preview"}), "000000.png: is there",
                   {"preview/000000.png"});
-  expectUntouched("synth-rawlog", {"--picture", "p.png"}, "p.png: is there", {"p.png"});
 }
 
 TEST_F(UserData, noFileIsWrittenTwice) {

@@ -6,7 +6,7 @@
 #include <labeled_cloud/ScanStream.h>
 #include <map_operations/SmoothedView.h>
 #include <map_pictures/MapPictures.h>
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 #include <semantic_driving/ViewStrategy.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_map/MapOptions.h>
@@ -125,7 +125,7 @@ std::vector<OptionTable> drivingTables() {
   return {
       table<DriveOptions>("Driving", "`[drive]` of `semantic-map-drive` and `drive-study`."),
       table<GuideOptions>("Which path is driven", "`[guide]`."),
-      table<MoverOptions>("People and others who move", "`[movers]`."),
+      table<DynamicObstacleOptions>("People and others who move", "`[movers]`."),
       table<FocusOptions>("Detail along the path",
                           "`[focus]`. What it brings: "
                           "[drives](../how-it-works/drives.md#detail-where-it-drives)."),

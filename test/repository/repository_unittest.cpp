@@ -139,7 +139,8 @@ TEST_F(Repository, programsAndTestsLinkLibrariesInsteadOfSourcesOfPrograms) {
 }
 
 TEST_F(Repository, namesOfOptionsHaveNoSpaces) {
-  EXPECT_EQ(optionNamesWithSpaces(root / "apps"), Findings());
+  for (const char* folder : {"apps", "test/benchmark"})
+    EXPECT_EQ(optionNamesWithSpaces(root / folder), Findings());
   write("main.cpp",
         "app.add_option(\"FILE\", file, \"A file to read\");\n"
         "app.add_option_function<std::string>(\n    \"FILE... OUT\", take);\n");
@@ -219,10 +220,11 @@ TEST_F(Repository, noTwoPagesHaveOneName) {
 }
 
 TEST_F(Repository, everyApplicationHasAReadme) {
-  for (const auto& entry : fs::directory_iterator(root / "apps")) {
-    if (!fs::exists(entry.path() / "CMakeLists.txt")) continue;
-    EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path();
-  }
+  for (const char* folder : {"apps", "test/benchmark"})
+    for (const auto& entry : fs::directory_iterator(root / folder)) {
+      if (!fs::exists(entry.path() / "CMakeLists.txt")) continue;
+      EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path();
+    }
 }
 
 TEST_F(Repository, filesThatRepeatTheVersionHaveThatOfTheProject) {

@@ -150,8 +150,8 @@ TEST(DriveOptions, SaysWhatIsWrongInAConfiguration) {
   EXPECT_TRUE(contains(faultOf("max_speed = 0\n"), "[drive] max_speed is 0"));
   EXPECT_TRUE(contains(faultOf("[guid]\nperiod = 3\n"), "did you mean 'guide'"));
   EXPECT_TRUE(contains(faultOf("[guide]\nat_goal = 0\n"), "at_goal is 0"));
-  EXPECT_TRUE(
-      contains(faultOf("[movers]\nclasses = ghost\n"), "ini: MoverOptions: 'ghost' is no class"));
+  EXPECT_TRUE(contains(faultOf("[movers]\nclasses = ghost\n"),
+                       "ini: DynamicObstacleOptions: 'ghost' is no class"));
   EXPECT_TRUE(contains(faultOf("[sensors]\ncamera = no\nlidar = no\n"), "both off"));
 }
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "CsvTable.h"
 #include "Plain.h"
 #include "Trial.h"
 
@@ -99,8 +98,8 @@ TEST(DriveStudy, DrivesATaskAndCountsIt) {
   EXPECT_EQ(trial.fault(), "");
   EXPECT_EQ(trial.record.end, DriveEnd::Arrived);
   EXPECT_GE(trial.record.length, 10.7);
-  const auto table = csvTable(toCsv({trial}));
-  ASSERT_EQ(table.size(), 2u);
-  EXPECT_EQ(table[0].size(), table[1].size());
-  EXPECT_TRUE(contains(toCsv({trial}), "\nyard,0,yes,arrived,"));
+  const auto json = toJson(trial, syntheticOrder());
+  EXPECT_EQ(json["scene"], "yard");
+  EXPECT_EQ(json["drive"]["end"], "arrived");
+  EXPECT_EQ(json["drive"]["meters"], trial.record.length);
 }

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <semantic_driving/DriveController.h>
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,9 +88,9 @@ class Robot {
   /** From the path's beginning. \param predicts the controller is told of those who move */
   Outcome drive(const std::vector<Person>& persons, bool predicts, std::uint32_t seed = 1) {
     m_begin += 1000;
-    MoverOptions all;
+    DynamicObstacleOptions all;
     all.radius = 30;
-    MoverTracker tracker(all, m_classes);
+    DynamicObstacleTracker tracker(all, m_classes);
     m_controller.setPath(bent());
     simulated_drive::SimulatedRobot robot({0, 0, 0}, options());
     std::mt19937 random(seed);
@@ -103,7 +103,7 @@ class Robot {
         tracker.update(t);
       }
       robot.drive(m_controller.step(robot.state(), {}, age, m_begin + t,
-                                    predicts ? tracker.at(t) : Movers()),
+                                    predicts ? tracker.at(t) : DynamicObstacles()),
                   kPeriod);
       outcome.add(robot.state(), persons, t + kPeriod);
       if (!m_controller.tracker().finished()) continue;
@@ -189,7 +189,7 @@ TEST(Separation, TheSlowerTheNearerOneStands) {
   const auto along = [](double way) { return TPose2D(way, 0, 0); };
   double before = 0;
   for (const double side : {0.7, 0.8, 0.9, 1.1, 1.5}) {
-    Mover mover{{1, side}, {0, 0}, 0.35, 0.5};
+    DynamicObstacle mover{{1, side}, {0, 0}, 0.35, 0.5};
     const double speed = separationSpeed(along, 0.2, 0, 1.2, {mover}, footprint, options());
     EXPECT_GE(speed, before) << side;
     EXPECT_GE(speed, DriveOptions::kSlowest) << side;
@@ -205,7 +205,7 @@ const semantic_planning::Footprint& robotShape() {
   return robot;
 }
 
-Mover walkerAt(const Vector2d& place, const Vector2d& velocity) {
+DynamicObstacle walkerAt(const Vector2d& place, const Vector2d& velocity) {
   return {place, velocity, 0.35, 0.1};
 }
 
@@ -216,7 +216,8 @@ struct Encounter {
   double way = 0;              ///< m
 };
 
-Encounter encounterWith(Mover mover, const std::vector<Vector2d>& walls, double seconds = 8) {
+Encounter encounterWith(DynamicObstacle mover, const std::vector<Vector2d>& walls,
+                        double seconds = 8) {
   const DriveOptions options;
   Encounter outcome;
   DriveState state;

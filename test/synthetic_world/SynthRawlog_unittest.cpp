@@ -189,38 +189,9 @@ TEST(SynthRawlog, refusesAClassTableThatDoesNotFoldTheWorldOrIsTooLarge) {
   EXPECT_FALSE(fs::exists(folder / "x.rawlog"));
 }
 
-TEST(SynthRawlog, answersWhatIsAtPoints) {
-  const Folder folder;
-  const auto scene = makeScene("village", 1);
-  const Eigen::Vector2d at = scene.route.at(60);
-  const double ground = scene.world.groundHeight(at.x(), at.y());
-  std::ofstream(folder / "points.txt") << std::setprecision(12) << "# x y z\n\n"
-                                       << at.x() << ' ' << at.y() << ' ' << ground + 0.01 << '\n'
-                                       << at.x() << ' ' << at.y() << ' ' << ground + 1 << '\n'
-                                       << at.x() << ' ' << at.y() << ' ' << ground - 1 << '\n';
-  const ProgramRun outcome = run(folder, "--truth-query points.txt");
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
-  std::istringstream lines(outcome.output);
-  for (const std::string expected : {"surface 1 road", "free 0 -", "underground 1 road"}) {
-    std::string line;
-    ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_EQ(line.substr(line.size() - expected.size()), expected);
-  }
-}
-
-TEST(SynthRawlog, pictureOfTheWorldIsWritten) {
-  const Folder folder;
-  ASSERT_EQ(run(folder, "--scene park --picture p.png").status, 0);
-  mrpt::img::CImage image;
-  ASSERT_TRUE(image.loadFromFile((folder / "p.png").string()));
-  EXPECT_EQ(image.getWidth(), 2 * image.getHeight());
-}
-
 TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
   const Folder folder;
-  std::ofstream(folder / "short.txt") << "1 2 3\n4 5\n";
   const std::pair<std::string, std::string> cases[] = {
-      {"", "--output, --picture or --truth-query is required"},
       {"-o x.rawlog --scene moon", "moon"},
       {"-o x.rawlog --sensor nose", "nose"},
       {"-o x.rawlog --frames 0", "--frames"},
@@ -235,10 +206,7 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
       {"-o x.rawlog --label-noise 2", "--label-noise is 2"},
       {"-o x.rawlog --dropout nan", "--dropout is"},
       {"-o x.rawlog --unknown 1", "--unknown"},
-      {"-o absent/x.rawlog", "absent/x.rawlog"},
-      {"--picture absent/p.png", "absent/p.png"},
-      {"--truth-query absent.txt", "absent.txt"},
-      {"--truth-query short.txt", "short.txt:2"}};
+      {"-o absent/x.rawlog", "absent/x.rawlog"}};
   for (const auto& [arguments, reason] : cases) {
     const ProgramRun outcome = run(folder, arguments);
     EXPECT_NE(outcome.status, 0) << arguments;

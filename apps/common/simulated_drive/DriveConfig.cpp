@@ -169,7 +169,8 @@ DriveConfig loadDriveConfig(const fs::path& file) {
     readSection(ini, "slam", config.slam);
     readNavigation(ini, folder, config);
     setSensor(config);
-    const semantic_driving::MoverTracker known(config.movers, synthetic_world::classTable());
+    const semantic_driving::DynamicObstacleTracker known(config.movers,
+                                                         synthetic_world::classTable());
     strict_files::checkSections(
         ini, {"map", "insertion", "sensors", "camera", "lidar", "pose", "slam", "planner", "drive",
               "guide", "movers", "focus", "explore"});

@@ -58,6 +58,16 @@ void DriveLog::writeMovement(mrpt::Clock::time_point time, const Eigen::Isometry
 using mrpt::obs::CObservation3DRangeScan;
 using synthetic_world::ClassTable;
 
+mrpt::obs::CObservationRobotPose::Ptr robotPose(const Eigen::Isometry3d& T_map_robot) {
+  auto pose = mrpt::obs::CObservationRobotPose::Create();
+  pose->sensorLabel = "ROBOT";
+  pose->pose.mean = toMrpt(T_map_robot);
+  return pose;
+}
+
+namespace {
+
+/** Blue, green, red. */
 cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image) {
   cv::Mat3b result(image.height, image.width);
   for (int row = 0; row < image.height; ++row)
@@ -67,15 +77,6 @@ cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image)
     }
   return result;
 }
-
-mrpt::obs::CObservationRobotPose::Ptr robotPose(const Eigen::Isometry3d& T_map_robot) {
-  auto pose = mrpt::obs::CObservationRobotPose::Create();
-  pose->sensorLabel = "ROBOT";
-  pose->pose.mean = toMrpt(T_map_robot);
-  return pose;
-}
-
-namespace {
 
 mrpt::obs::TPixelLabelInfoBase::Ptr labelBits(
     const synthetic_world::Image<synthetic_world::ClassId>& labels, const ClassTable& classes) {

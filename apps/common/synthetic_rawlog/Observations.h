@@ -44,9 +44,6 @@ class DriveLog {
   bool m_started = false;
 };
 
-/** Blue, green, red. */
-cv::Mat3b pictureOf(const synthetic_world::Image<synthetic_world::Color>& image);
-
 mrpt::obs::CObservationRobotPose::Ptr robotPose(const Eigen::Isometry3d& T_map_robot);
 
 /** Most classes of a camera's pixels. */

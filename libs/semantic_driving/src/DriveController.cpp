@@ -1,5 +1,5 @@
 #include <semantic_driving/DriveController.h>
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ void DriveController::setPath(DrivePath path) {
 }
 
 DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints& obstacles,
-                                   double sensorAge, double seconds, const Movers& movers,
+                                   double sensorAge, double seconds, const DynamicObstacles& movers,
                                    const ObstaclePoints* room) {
   m_track.add(state.pose);
   m_tracker.locate(state);
@@ -138,7 +138,7 @@ std::function<TPose2D(double)> DriveController::wayAhead(const DriveState& state
 }
 
 DriveCommand DriveController::besideMovers(const DriveState& state, DriveCommand wanted,
-                                           const Movers& movers) const {
+                                           const DynamicObstacles& movers) const {
   if (wanted.speed == 0 || movers.empty()) return wanted;
   const double forward = std::copysign(1.0, wanted.speed), speed = std::abs(wanted.speed);
   const double most = separationSpeed(wayAhead(state, wanted), std::max(0.0, forward * state.speed),

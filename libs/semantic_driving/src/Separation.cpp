@@ -1,4 +1,4 @@
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ class Forecast {
         m_options(options) {}
 
   /** Nobody touches it as it brakes, while it is not slow. */
-  bool canStop(double target, const Mover& mover) const {
+  bool canStop(double target, const DynamicObstacle& mover) const {
     double speed = m_speed, way = 0;
     for (double t = 0; t < m_reaction || speed > DriveOptions::kSlowest; t += kTick) {
       if (speed > kSlow * DriveOptions::kSlowest && touches(mover, way, t, spreadAfter(mover, t)))
@@ -36,19 +36,19 @@ class Forecast {
     return true;
   }
   /** Nobody who walks touches it as it brakes, nor later where it stands. */
-  bool isFreeAtRest(double target, const Mover& mover) const {
+  bool isFreeAtRest(double target, const DynamicObstacle& mover) const {
     return isFree(target, mover, true, false);
   }
   /** Nobody touches it as it goes on, as long as that.
    * \param spreads the place grows with what is not known */
-  bool isFreeAhead(double target, const Mover& mover, bool spreads) const {
+  bool isFreeAhead(double target, const DynamicObstacle& mover, bool spreads) const {
     return isFree(target, mover, false, spreads);
   }
 
  private:
   static constexpr double kSlow = 1.05;  // of DriveOptions::kSlowest
 
-  bool isFree(double target, const Mover& mover, bool brakes, bool spreads) const {
+  bool isFree(double target, const DynamicObstacle& mover, bool brakes, bool spreads) const {
     const double last = m_reaction + std::max(m_speed, target) / m_options.braking() + kLinger;
     double speed = m_speed, way = 0;
     for (double t = 0; t < last; t += kTick) {
@@ -64,10 +64,10 @@ class Forecast {
     speed += std::clamp(target - speed, -most, most);
     way += (before + speed) / 2 * kTick;
   }
-  double spreadAfter(const Mover& mover, double seconds) const {
+  double spreadAfter(const DynamicObstacle& mover, double seconds) const {
     return std::min(kSpread, mover.speedNoise * seconds);
   }
-  bool touches(const Mover& mover, double way, double seconds, double spread) const {
+  bool touches(const DynamicObstacle& mover, double way, double seconds, double spread) const {
     const Eigen::Vector2d place = mover.placeAfter(seconds);
     const auto p = m_poseAfter(way).inverseComposePoint({place.x(), place.y()});
     const double margin = mover.stands() ? 0 : DriveOptions::kMoverMargin;
@@ -81,12 +81,13 @@ class Forecast {
 };
 
 /** A person who stands is an obstacle like others. */
-bool letsPass(const Forecast& forecast, double target, const Mover& mover) {
+bool letsPass(const Forecast& forecast, double target, const DynamicObstacle& mover) {
   return mover.stands() || forecast.isFreeAhead(target, mover, false) ||
          forecast.isFreeAtRest(target, mover);
 }
 
-double speedBeside(const Forecast& forecast, const Mover& mover, double wanted, double slowest) {
+double speedBeside(const Forecast& forecast, const DynamicObstacle& mover, double wanted,
+                   double slowest) {
   std::array<double, 8> speeds{};
   for (std::size_t i = 0; i < speeds.size(); ++i)
     speeds[i] = wanted * (1 - static_cast<double>(i) / speeds.size());
@@ -105,11 +106,11 @@ double speedBeside(const Forecast& forecast, const Mover& mover, double wanted, 
 }  // namespace
 
 double separationSpeed(const std::function<mrpt::math::TPose2D(double)>& poseAfter, double speed,
-                       double acceleration, double wanted, const Movers& movers,
+                       double acceleration, double wanted, const DynamicObstacles& movers,
                        const semantic_planning::Footprint& footprint, const DriveOptions& options) {
   const Forecast forecast(poseAfter, speed, acceleration, footprint, options);
   double slowest = wanted;
-  for (const Mover& mover : movers)
+  for (const DynamicObstacle& mover : movers)
     slowest = std::min(slowest, speedBeside(forecast, mover, wanted, DriveOptions::kSlowest));
   return slowest;
 }
@@ -128,14 +129,14 @@ struct WayOut {
 class WaysOut {
  public:
   WaysOut(const DriveState& state, const Motion& motion, const ObstaclePoints& room,
-          const Movers& movers, const semantic_planning::Footprint& footprint,
+          const DynamicObstacles& movers, const semantic_planning::Footprint& footprint,
           const DriveOptions& options)
       : m_state(state), m_motion(motion), m_footprint(footprint), m_options(options) {
     const double reach = options.maxSpeed * kSoon + 1;  // m
     std::copy_if(room.begin(), room.end(), std::back_inserter(m_room),
                  [&](const Eigen::Vector2d& p) { return p.norm() < reach; });
     const double c = std::cos(state.pose.phi), s = std::sin(state.pose.phi);
-    for (Mover mover : movers) {
+    for (DynamicObstacle mover : movers) {
       if (mover.stands()) continue;
       const Eigen::Vector2d& v = mover.velocity;
       const auto place = state.pose.inverseComposePoint({mover.place.x(), mover.place.y()});
@@ -155,7 +156,7 @@ class WaysOut {
     mrpt::math::TPose2D pose;
     double speed = m_state.speed;
     for (double t = 0; t < kSoon && least > -1; t += kStepTick) {
-      for (const Mover& w : m_walkers) least = std::min(least, distanceTo(w, pose, t));
+      for (const DynamicObstacle& w : m_walkers) least = std::min(least, distanceTo(w, pose, t));
       const double wanted = t < way.seconds ? way.speed : 0;
       motion = next(motion, {wanted, wanted * way.curvature}, speed, kStepTick, m_options);
       speed = motion.speed;
@@ -167,7 +168,8 @@ class WaysOut {
   }
 
  private:
-  double distanceTo(const Mover& w, const mrpt::math::TPose2D& pose, double seconds) const {
+  double distanceTo(const DynamicObstacle& w, const mrpt::math::TPose2D& pose,
+                    double seconds) const {
     const Eigen::Vector2d place = w.placeAfter(seconds);
     const auto p = pose.inverseComposePoint({place.x(), place.y()});
     return m_footprint.distance({p.x, p.y}) - w.size;
@@ -184,13 +186,13 @@ class WaysOut {
   const semantic_planning::Footprint& m_footprint;
   const DriveOptions& m_options;
   ObstaclePoints m_room;
-  Movers m_walkers;  ///< vehicle's frame
+  DynamicObstacles m_walkers;  ///< vehicle's frame
 };
 
 }  // namespace
 
 std::optional<DriveCommand> stepAside(const DriveState& state, const Motion& motion,
-                                      const ObstaclePoints& room, const Movers& movers,
+                                      const ObstaclePoints& room, const DynamicObstacles& movers,
                                       const semantic_planning::Footprint& footprint,
                                       const DriveOptions& options) {
   constexpr double kGain = 0.1;  // m: less is not worth it

@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_driving/DriveOptions.h>
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 #include <semantic_planning/vehicle/Footprint.h>
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace semantic_driving {
  * to be ground; vehicle's frame \param movers map frame
  * \return nothing if nobody walks into it, or nothing helps */
 std::optional<DriveCommand> stepAside(const DriveState& state, const Motion& motion,
-                                      const ObstaclePoints& room, const Movers& movers,
+                                      const ObstaclePoints& room, const DynamicObstacles& movers,
                                       const semantic_planning::Footprint& footprint,
                                       const DriveOptions& options);
 

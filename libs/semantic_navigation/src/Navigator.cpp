@@ -85,9 +85,9 @@ semantic_types::LabeledCloud groundBelow(const semantic_planning::SemanticPlanne
 }
 
 /** Who stands is in the way, though the map does not have him yet. */
-void addStanding(const Movers& movers, const TPose2D& robot, ObstaclePoints& obstacles) {
+void addStanding(const DynamicObstacles& movers, const TPose2D& robot, ObstaclePoints& obstacles) {
   constexpr int kPoints = 8;
-  for (const Mover& mover : movers)
+  for (const DynamicObstacle& mover : movers)
     for (int i = 0; mover.stands() && i < kPoints; ++i) {
       const double to = i * 2 * M_PI / kPoints;
       const auto p = robot.inverseComposePoint({mover.place.x() + mover.size * std::cos(to),
@@ -319,7 +319,7 @@ DriveCommand Navigator::step(double clock) {
   if (isInserting() && seconds - m_insertingFrom >= m_options.mappingLatency - kSameTime) finish();
   if (m_guidesNext && mayGuide()) guide(seconds);
   CpuClock time;
-  const Movers movers = m_movers.at(seconds);
+  const DynamicObstacles movers = m_movers.at(seconds);
   ObstaclePoints around = obstacles(m_options.obstacleRadius(), false);
   addStanding(movers, m_state.pose, around);
   note("obstacles", time.lap());

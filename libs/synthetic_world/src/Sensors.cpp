@@ -123,61 +123,6 @@ ClassId SensorNoise::disturbed(ClassId id, Random& random) const {
 
 namespace {
 
-constexpr double kFarthest = 250;  // m that the color image reaches
-constexpr std::uint64_t kCameraStream = 1;
-
-}  // namespace
-
-double CameraOptions::focalLength() const {
-  return width / (2 * std::tan(horizontalFov * M_PI / 360));
-}
-
-void CameraOptions::describe(strict_files::OptionList& list) {
-  using strict_files::between;
-  list.add("width", width, "pixels", between(2, 8192), "width of the images");
-  list.add("height", height, "pixels", between(2, 8192), "height of the images");
-  list.add("fov", horizontalFov, "degrees", between(1, 170), "horizontal field of view");
-  list.add("max_range", maxRange, "m", strict_files::above(kMinRange).upTo(kFarthest),
-           "greatest depth");
-}
-
-void CameraOptions::validate() const {
-  strict_files::checkOptions(*this, "CameraOptions");
-  noise.validate();
-}
-
-CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_camera,
-                         const CameraOptions& options, FrameSeed seed) {
-  options.validate();
-  const int w = options.width, h = options.height;
-  CameraFrame frame{Image<float>(w, h, 0.f), Image<ClassId>(w, h, kNoClass), {}};
-  if (options.color) frame.color = Image<Color>(w, h);
-
-  for (int row = 0; row < h; ++row)
-    for (int column = 0; column < w; ++column) {
-      const Eigen::Vector3d ray = options.ray(row, column);
-      const double rangePerDepth = ray.norm();
-      const Eigen::Vector3d direction = T_world_camera.linear() * (ray / rangePerDepth);
-      const double reach =
-          options.color ? kFarthest : (options.maxRange + 5 * options.noise.range) * rangePerDepth;
-      const auto hit = world.castRay(T_world_camera.translation(), direction, reach);
-      if (options.color)
-        frame.color.at(row, column) = hit ? surfaceColor(world, *hit) : skyColor(direction);
-      if (!hit) continue;
-
-      const auto pixel = static_cast<std::uint64_t>(row) * w + column;
-      Random random = Random::ofStream(seed.seed, kCameraStream + 4 * seed.frame, pixel);
-      const double depth = options.noise.disturbed(hit->range / rangePerDepth, random);
-      if (depth < CameraOptions::kMinRange || depth > options.maxRange) continue;
-      if (options.noise.drops(random)) continue;
-      frame.depth.at(row, column) = static_cast<float>(depth);
-      frame.labels.at(row, column) = options.noise.disturbed(hit->material.id, random);
-    }
-  return frame;
-}
-
-namespace {
-
 const Eigen::Vector3d kToSun = Eigen::Vector3d(-0.45, -0.55, 0.75).normalized();
 const Eigen::Vector3d kSunLight(1.0, 0.95, 0.86), kSkyLight(0.42, 0.46, 0.54);
 const Eigen::Vector3d kHaze(196, 210, 224);
@@ -286,10 +231,10 @@ Eigen::Vector3d sky(const Eigen::Vector3d& direction) {
   return kHaze + std::sqrt(up) * (Eigen::Vector3d(112, 158, 214) - kHaze);
 }
 
-}  // namespace
-
+/** Color of the sky in a direction of unit length. */
 Color skyColor(const Eigen::Vector3d& direction) { return color(sky(direction)); }
 
+/** Color of a surface in the afternoon sun: texture, light, cast shadow, haze. */
 Color surfaceColor(const World& world, const Hit& hit) {
   const double facing = hit.normal.dot(kToSun);
   const double sun = facing > 0 && !inShadow(world, hit) ? 0.78 * facing : 0;
@@ -300,26 +245,57 @@ Color surfaceColor(const World& world, const Hit& hit) {
   return color(lit + haze * (kHaze - lit));
 }
 
-TopView renderTopView(const World& world, double metersPerPixel) {
-  const double edge = 2 * world.halfExtent(), pixels = std::floor(edge / metersPerPixel);
-  if (!(metersPerPixel > 0) || pixels > 8192)
-    throw std::invalid_argument("top view: metersPerPixel is " + std::to_string(metersPerPixel) +
-                                ", a positive number that leaves 8192 pixels or fewer expected");
-  const int size = static_cast<int>(pixels);
-  constexpr double kHeight = 60;
-  TopView view{Image<Color>(size, size), Image<ClassId>(size, size, kNoClass)};
-  for (int row = 0; row < size; ++row)
-    for (int column = 0; column < size; ++column) {
-      const double x = (column + 0.5) * metersPerPixel - world.halfExtent();
-      const double y = world.halfExtent() - (row + 0.5) * metersPerPixel;
-      auto hit = world.castRay({x, y, world.groundHeight(x, y) + kHeight},
-                               -Eigen::Vector3d::UnitZ(), 2 * kHeight);
+constexpr double kFarthest = 250;  // m that the color image reaches
+constexpr std::uint64_t kCameraStream = 1;
+
+}  // namespace
+
+double CameraOptions::focalLength() const {
+  return width / (2 * std::tan(horizontalFov * M_PI / 360));
+}
+
+void CameraOptions::describe(strict_files::OptionList& list) {
+  using strict_files::between;
+  list.add("width", width, "pixels", between(2, 8192), "width of the images");
+  list.add("height", height, "pixels", between(2, 8192), "height of the images");
+  list.add("fov", horizontalFov, "degrees", between(1, 170), "horizontal field of view");
+  list.add("max_range", maxRange, "m", strict_files::above(kMinRange).upTo(kFarthest),
+           "greatest depth");
+}
+
+void CameraOptions::validate() const {
+  strict_files::checkOptions(*this, "CameraOptions");
+  noise.validate();
+}
+
+CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_camera,
+                         const CameraOptions& options, FrameSeed seed) {
+  options.validate();
+  const int w = options.width, h = options.height;
+  CameraFrame frame{Image<float>(w, h, 0.f), Image<ClassId>(w, h, kNoClass), {}};
+  if (options.color) frame.color = Image<Color>(w, h);
+
+  for (int row = 0; row < h; ++row)
+    for (int column = 0; column < w; ++column) {
+      const Eigen::Vector3d ray = options.ray(row, column);
+      const double rangePerDepth = ray.norm();
+      const Eigen::Vector3d direction = T_world_camera.linear() * (ray / rangePerDepth);
+      const double reach =
+          options.color ? kFarthest : (options.maxRange + 5 * options.noise.range) * rangePerDepth;
+      const auto hit = world.castRay(T_world_camera.translation(), direction, reach);
+      if (options.color)
+        frame.color.at(row, column) = hit ? surfaceColor(world, *hit) : skyColor(direction);
       if (!hit) continue;
-      hit->range = 0;  // no haze
-      view.color.at(row, column) = surfaceColor(world, *hit);
-      view.labels.at(row, column) = hit->material.id;
+
+      const auto pixel = static_cast<std::uint64_t>(row) * w + column;
+      Random random = Random::ofStream(seed.seed, kCameraStream + 4 * seed.frame, pixel);
+      const double depth = options.noise.disturbed(hit->range / rangePerDepth, random);
+      if (depth < CameraOptions::kMinRange || depth > options.maxRange) continue;
+      if (options.noise.drops(random)) continue;
+      frame.depth.at(row, column) = static_cast<float>(depth);
+      frame.labels.at(row, column) = options.noise.disturbed(hit->material.id, random);
     }
-  return view;
+  return frame;
 }
 
 }  // namespace synthetic_world

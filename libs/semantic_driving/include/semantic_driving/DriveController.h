@@ -1,6 +1,6 @@
 #pragma once
 #include <semantic_driving/DrivePath.h>
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 #include <semantic_driving/PathTracker.h>
 #include <semantic_driving/ReactiveNavigator.h>
 
@@ -30,7 +30,7 @@ class DriveController {
    * \param movers where they are now, map frame \param room obstacles, and what is not known to be
    * ground (ObstacleOptions::unknown); null: it does not step aside */
   DriveCommand step(const DriveState& state, const ObstaclePoints& obstacles, double sensorAge,
-                    double seconds, const Movers& movers = {},
+                    double seconds, const DynamicObstacles& movers = {},
                     const ObstaclePoints* room = nullptr);
 
   enum class Driver { Tracker, Reactive };
@@ -48,7 +48,7 @@ class DriveController {
   std::function<mrpt::math::TPose2D(double)> wayAhead(const DriveState& state,
                                                       const DriveCommand& wanted) const;
   DriveCommand besideMovers(const DriveState& state, DriveCommand wanted,
-                            const Movers& movers) const;
+                            const DynamicObstacles& movers) const;
   Motion safeMotion(const DriveState& state, const DriveCommand& wanted,
                     const ObstaclePoints& obstacles, double since) const;
   bool isSafe(Motion motion, const DriveCommand& wanted, const ObstaclePoints& obstacles) const;

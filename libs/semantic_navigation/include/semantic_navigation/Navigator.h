@@ -19,7 +19,7 @@ struct NavigatorOptions {
   semantic_planning::PlannerOptions planner;  ///< keepOff and shorten are on
   semantic_driving::DriveOptions drive;
   semantic_driving::GuideOptions guide;
-  semantic_driving::MoverOptions movers;
+  semantic_driving::DynamicObstacleOptions movers;
   semantic_driving::FocusOptions focus;
   semantic_driving::ExploreOptions explore;  ///< its sensor has to be set
   /** Seconds from a scan until the map has it. Above 0 a thread inserts it meanwhile, and is waited
@@ -185,7 +185,7 @@ class Navigator {
   semantic_octree::LeafFollower m_leaves;
   std::optional<semantic_driving::DriveGuide> m_guide;
   semantic_driving::DriveController m_controller;
-  semantic_driving::MoverTracker m_movers;
+  semantic_driving::DynamicObstacleTracker m_movers;
   std::unique_ptr<semantic_driving::ViewStrategy> m_views;  ///< null: it has a goal, or none
   std::optional<semantic_driving::View> m_view;             ///< the guide's goal, then
   double m_driven = 0, m_chosenAt = 0;                      ///< m

@@ -121,20 +121,4 @@ LabeledCloud scanLidar(const World& world, const Eigen::Isometry3d& T_world_lida
 /** The share of the turn at which each point of such a scan was taken. */
 std::vector<float> sharesOfTurn(const LabeledCloud& scan);
 
-/** Color of a surface in the afternoon sun: texture, light, cast shadow, haze. */
-Color surfaceColor(const World& world, const Hit& hit);
-
-/** Color of the sky in a direction of unit length. */
-Color skyColor(const Eigen::Vector3d& direction);
-
-/** A world seen straight from above, north (+y) up, x to the right. */
-struct TopView {
-  Image<Color> color;
-  Image<ClassId> labels;
-};
-
-/** \param metersPerPixel
- * \throw std::invalid_argument not positive, or so small that an edge has more than 8192 pixels. */
-TopView renderTopView(const World& world, double metersPerPixel);
-
 }  // namespace synthetic_world

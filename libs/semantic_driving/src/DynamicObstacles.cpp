@@ -1,4 +1,4 @@
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,9 @@ std::vector<bool> classesIn(const std::string& names, const semantic_types::Clas
     name.erase(0, name.find_first_not_of(' '));
     name.erase(name.find_last_not_of(' ') + 1);
     const auto id = table.find(name);
-    if (!id) throw std::invalid_argument("MoverOptions: '" + name + "' is no class of the table");
+    if (!id)
+      throw std::invalid_argument("DynamicObstacleOptions: '" + name +
+                                  "' is no class of the table");
     chosen[*id] = true;
   }
   return chosen;
@@ -42,32 +44,36 @@ std::vector<bool> classesIn(const std::string& names, const semantic_types::Clas
 
 }  // namespace
 
-void MoverOptions::describe(strict_files::OptionList& list) {
+void DynamicObstacleOptions::describe(strict_files::OptionList& list) {
   list.add("classes", classes, "", "classes that move, with commas between; empty: none");
 }
 
-void MoverOptions::validate() const { strict_files::checkOptions(*this, "MoverOptions"); }
+void DynamicObstacleOptions::validate() const {
+  strict_files::checkOptions(*this, "DynamicObstacleOptions");
+}
 
-MoverTracker::MoverTracker(const MoverOptions& options, const semantic_types::ClassTable& classes)
+DynamicObstacleTracker::DynamicObstacleTracker(const DynamicObstacleOptions& options,
+                                               const semantic_types::ClassTable& classes)
     : m_options(options), m_isMover(classesIn(options.classes, classes)) {
   m_options.validate();
 }
 
-void MoverTracker::see(const semantic_types::LabeledCloud& cloud,
-                       const Eigen::Isometry3d& T_map_sensor) {
+void DynamicObstacleTracker::see(const semantic_types::LabeledCloud& cloud,
+                                 const Eigen::Isometry3d& T_map_sensor) {
   if (cloud.classes.empty()) return;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (isOfMover(cloud, i))
       m_seen.push_back((T_map_sensor * cloud.points[i].cast<double>()).head<2>());
 }
 
-bool MoverTracker::isOfMover(const semantic_types::LabeledCloud& cloud, std::size_t i) const {
+bool DynamicObstacleTracker::isOfMover(const semantic_types::LabeledCloud& cloud,
+                                       std::size_t i) const {
   const ClassId id = cloud.classes[i];
   return id < m_isMover.size() && m_isMover[id] &&
          cloud.points[i].cast<double>().norm() <= m_options.radius;
 }
 
-semantic_types::LabeledCloud MoverTracker::withoutPassing(
+semantic_types::LabeledCloud DynamicObstacleTracker::withoutPassing(
     const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor) const {
   const auto isPassing = [&](std::size_t i) {
     if (!isOfMover(cloud, i)) return false;
@@ -90,7 +96,7 @@ semantic_types::LabeledCloud MoverTracker::withoutPassing(
   return rest;
 }
 
-void MoverTracker::noteStanding(Track& track, double seconds) {
+void DynamicObstacleTracker::noteStanding(Track& track, double seconds) {
   if (track.velocity.norm() >= kStandsBelow) track.walkedAt = seconds;
   if (!track.stands && seconds - track.walkedAt >= kStays) track.stands = track.place;
   if (!track.stands || (track.place - *track.stands).norm() < kGone) return;
@@ -99,7 +105,7 @@ void MoverTracker::noteStanding(Track& track, double seconds) {
 }
 
 /** Middles of clusters: points that are near one another, seen from above. */
-std::vector<Vector2d> MoverTracker::middles() const {
+std::vector<Vector2d> DynamicObstacleTracker::middles() const {
   using Cell = std::pair<long, long>;
   const auto cellOf = [](const Vector2d& p) {
     return Cell(std::lround(p.x() / kApart), std::lround(p.y() / kApart));
@@ -135,7 +141,7 @@ std::vector<Vector2d> MoverTracker::middles() const {
   return middles;
 }
 
-void MoverTracker::predict(Track& track, double seconds) {
+void DynamicObstacleTracker::predict(Track& track, double seconds) {
   const double a = kWalking * seconds;
   track.place += seconds * track.velocity;
   track.pp += seconds * (2 * track.pv + seconds * track.vv) + a * a * seconds * seconds / 4;
@@ -143,7 +149,7 @@ void MoverTracker::predict(Track& track, double seconds) {
   track.vv += a * a;
 }
 
-void MoverTracker::correct(Track& track, const Vector2d& middle) {
+void DynamicObstacleTracker::correct(Track& track, const Vector2d& middle) {
   const double sum = track.pp + kPlaceNoise * kPlaceNoise;
   const double gain = track.pp / sum, speedGain = track.pv / sum;
   const Vector2d off = middle - track.place;
@@ -154,7 +160,7 @@ void MoverTracker::correct(Track& track, const Vector2d& middle) {
   track.pv *= 1 - gain;
 }
 
-void MoverTracker::update(double seconds) {
+void DynamicObstacleTracker::update(double seconds) {
   const std::vector<Vector2d> seen = middles();
   m_seen.clear();
   const double since = seconds - m_updatedAt;
@@ -192,8 +198,8 @@ void MoverTracker::update(double seconds) {
   for (Track& track : m_tracks) noteStanding(track, seconds);
 }
 
-Movers MoverTracker::at(double seconds) const {
-  Movers movers;
+DynamicObstacles DynamicObstacleTracker::at(double seconds) const {
+  DynamicObstacles movers;
   for (Track track : m_tracks) {
     predict(track, std::max(0.0, seconds - m_updatedAt));
     const bool stands = track.velocity.norm() < kStandsBelow;

@@ -1,12 +1,10 @@
 #include "Trial.h"
 
-#include <strict_files/TextFile.h>
 #include <synthetic_world/Solids.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -177,71 +175,6 @@ void Oracle::solve(Task& task) {
 }
 
 using namespace simulated_drive;
-using strict_files::csvField;
-
-namespace {
-
-/** 0 of none. */
-double quantileOf(const std::vector<double>& values, double share) {
-  return values.empty() ? 0 : measuring::quantile(values, share);
-}
-
-/** Milliseconds of the processor to localize, insert, update and replan, from a scan to the path
- * that follows from it. */
-double cycleOf(const DriveRecord& record, double share) {
-  std::vector<double> cycles;
-  if (record.times.count("insert+update+replan")) cycles = record.times.at("insert+update+replan");
-  if (const auto localize = record.times.find("localize"); localize != record.times.end())
-    for (std::size_t i = 0; i < std::min(cycles.size(), localize->second.size()); ++i)
-      cycles[i] += localize->second[i];
-  return quantileOf(cycles, share);
-}
-
-/** A number of each drive. */
-struct Column {
-  const char* name;
-  double (*of)(const Trial&);
-};
-
-double degrees(double radians) { return radians * 180 / M_PI; }
-
-const std::vector<Column>& columns() {
-  using T = const Trial&;
-  static const std::vector<Column> columns = {
-      {"start_x", [](T t) { return t.task.start.x; }},
-      {"start_y", [](T t) { return t.task.start.y; }},
-      {"start_deg", [](T t) { return degrees(t.task.start.phi); }},
-      {"goal_x", [](T t) { return t.task.goal.x; }},
-      {"goal_y", [](T t) { return t.task.goal.y; }},
-      {"goal_deg", [](T t) { return degrees(t.task.goal.phi); }},
-      {"path_length", [](T t) { return t.task.length; }},
-      {"path_worse", [](T t) { return t.badBest; }},
-      {"seconds", [](T t) { return t.record.duration(); }},
-      {"length", [](T t) { return t.record.length; }},
-      {"worse", [](T t) { return t.badDriven; }},
-      {"worse_planned", [](T t) { return t.badFollowed; }},
-      {"collisions", [](T t) { return double(t.record.collisions); }},
-      {"clearance", [](T t) { return t.record.leastClearance; }},
-      {"replans", [](T t) { return double(t.record.replans); }},
-      {"explored", [](T t) { return double(t.explored); }},
-      {"jerk", [](T t) { return smoothnessOf(t.record).jerk; }},
-      {"backwards", [](T t) { return smoothnessOf(t.record).backwards; }},
-      {"longest_backwards", [](T t) { return smoothnessOf(t.record).longestBackwards; }},
-      {"gear_changes", [](T t) { return double(smoothnessOf(t.record).gearChanges); }},
-      {"turn_changes", [](T t) { return double(smoothnessOf(t.record).turnChanges); }},
-      {"path_turn_changes", [](T t) { return double(smoothnessOf(t.record).pathTurnChanges); }},
-      {"pose_error", [](T t) { return poseErrorsOf(t.record, &DriveRow::believed).mean; }},
-      {"largest_pose_error",
-       [](T t) { return poseErrorsOf(t.record, &DriveRow::believed).largest; }},
-      {"odometry_error", [](T t) { return poseErrorsOf(t.record, &DriveRow::odometry).mean; }},
-      {"cycle", [](T t) { return cycleOf(t.record, 0.5); }},
-      {"slow_cycle", [](T t) { return cycleOf(t.record, 0.95); }},
-      {"leaves", [](T t) { return quantileOf(t.record.leaves, 0.5); }},
-      {"processor", [](T t) { return t.processorSeconds; }}};
-  return columns;
-}
-
-}  // namespace
 
 std::string Trial::fault() const {
   constexpr double kMore = 1.05, kVoxel = 0.2;  // m: lengths are no better known
@@ -264,24 +197,24 @@ Trial runTrial(const DriveConfig& config, synthetic_world::World& world,
   trial.explored = std::as_const(loop).guide().explored();
   trial.badDriven = badLength(record.drivenPerClass, order);
   trial.badFollowed = badLength(record.plannedPerClass, order);
-  trial.badBest = badLength(task.lengthPerClass, order);
   trial.processorSeconds = watch.milliseconds() / 1e3;
   return trial;
 }
 
-std::string toCsv(const std::vector<Trial>& trials) {
-  std::ostringstream out;
-  out << "scene,number,path,end,fault,why_no_path,reason";
-  for (const Column& column : columns()) out << ',' << column.name;
-  for (const Trial& t : trials) {
-    out << '\n'
-        << t.scene << ',' << t.number << ',' << (t.task.hasPath ? "yes" : "no") << ','
-        << nameOf(t.record.end) << ',' << t.fault() << ',' << csvField(t.task.reason) << ','
-        << csvField(t.record.reason);
-    for (const Column& column : columns()) out << ',' << column.of(t);
-  }
-  out << '\n';
-  return out.str();
+nlohmann::json toJson(const Trial& trial, const ClassOrder& order) {
+  const auto pose = [](const TPose2D& p) { return nlohmann::json{p.x, p.y, p.phi * 180 / M_PI}; };
+  return {{"scene", trial.scene},
+          {"number", trial.number},
+          {"start", pose(trial.task.start)},
+          {"goal", pose(trial.task.goal)},
+          {"hasPath", trial.task.hasPath},
+          {"whyNoPath", trial.task.reason},
+          {"pathMeters", trial.task.length},
+          {"pathMetersInWorseClasses", badLength(trial.task.lengthPerClass, order)},
+          {"fault", trial.fault()},
+          {"frontiers", trial.explored},
+          {"processorSeconds", trial.processorSeconds},
+          {"drive", toJson(trial.record, order)}};
 }
 
 }  // namespace drive_study

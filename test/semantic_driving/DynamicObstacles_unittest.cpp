@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <semantic_driving/Movers.h>
+#include <semantic_driving/DynamicObstacles.h>
 
 #include <algorithm>
 #include <random>
@@ -17,7 +17,7 @@ semantic_types::ClassTable table() { return tableOf({"wall", "person"}); }
 
 class Follower {
  public:
-  explicit Follower(const MoverOptions& options = {}) : m_tracker(options, table()) {}
+  explicit Follower(const DynamicObstacleOptions& options = {}) : m_tracker(options, table()) {}
 
   /** Some points around each place. */
   void scan(const std::vector<Vector2d>& places, double seconds,
@@ -33,7 +33,7 @@ class Follower {
     m_tracker.see(cloud, Eigen::Isometry3d::Identity());
     m_tracker.update(seconds);
   }
-  Movers at(double seconds) const { return m_tracker.at(seconds); }
+  DynamicObstacles at(double seconds) const { return m_tracker.at(seconds); }
   /** How many points, one of each class at a place, a scan keeps without those who pass. */
   std::size_t lastingAt(const Vector2d& place) const {
     semantic_types::LabeledCloud cloud;
@@ -43,28 +43,29 @@ class Follower {
   }
   std::vector<Vector2d> takeLeft() { return m_tracker.takeLeft(); }
   /** Seen nearest to a place. */
-  Mover near(const Vector2d& place, double seconds) const {
-    const Movers movers = at(seconds);
-    return *std::min_element(movers.begin(), movers.end(), [&](const Mover& a, const Mover& b) {
-      return (a.place - place).norm() < (b.place - place).norm();
-    });
+  DynamicObstacle near(const Vector2d& place, double seconds) const {
+    const DynamicObstacles movers = at(seconds);
+    return *std::min_element(movers.begin(), movers.end(),
+                             [&](const DynamicObstacle& a, const DynamicObstacle& b) {
+                               return (a.place - place).norm() < (b.place - place).norm();
+                             });
   }
 
  private:
-  MoverTracker m_tracker;
+  DynamicObstacleTracker m_tracker;
   std::mt19937 m_random{3};
 };
 
 }  // namespace
 
-TEST(MoverTracker, KnowsAfterAFewScansWhereSomebodyWalks) {
+TEST(DynamicObstacleTracker, KnowsAfterAFewScansWhereSomebodyWalks) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-6, 6), speed(-1.4, 1.4);
   for (int i = 0; i < 50; ++i) {
     const Vector2d from(place(random), place(random)), velocity(speed(random), speed(random));
     Follower follower;
     for (double t = 0; t < 2.1; t += 0.5) follower.scan({from + t * velocity}, t);
-    const Movers movers = follower.at(3);
+    const DynamicObstacles movers = follower.at(3);
     ASSERT_EQ(movers.size(), 1u) << i;
     if (velocity.norm() > 0.5) {
       EXPECT_LT((movers[0].velocity - velocity).norm(), 0.3) << i;
@@ -74,7 +75,7 @@ TEST(MoverTracker, KnowsAfterAFewScansWhereSomebodyWalks) {
   }
 }
 
-TEST(MoverTracker, LeavesThoseOutOfAScanWhoPassButNotWhoStands) {
+TEST(DynamicObstacleTracker, LeavesThoseOutOfAScanWhoPassButNotWhoStands) {
   Follower follower;
   const Vector2d standing(3, 2), passing(-3, -2), velocity(0.8, 0.8);
   for (double t = 0; t < 5; t += 0.5) {
@@ -88,7 +89,7 @@ TEST(MoverTracker, LeavesThoseOutOfAScanWhoPassButNotWhoStands) {
   EXPECT_EQ(follower.lastingAt(standing), 2u);
 }
 
-TEST(MoverTracker, TellsOnceWhereSomebodyStoodWhoWalksAway) {
+TEST(DynamicObstacleTracker, TellsOnceWhereSomebodyStoodWhoWalksAway) {
   Follower follower;
   const Vector2d place(2, 1);
   for (double t = 0; t < 5; t += 0.5) follower.scan({place}, t);
@@ -102,7 +103,7 @@ TEST(MoverTracker, TellsOnceWhereSomebodyStoodWhoWalksAway) {
   EXPECT_LT((left[0] - place).norm(), 0.2);
 }
 
-TEST(MoverTracker, TellsThoseApartWhoCross) {
+TEST(DynamicObstacleTracker, TellsThoseApartWhoCross) {
   Follower follower;
   for (double t = 0; t < 5; t += 0.5)
     follower.scan({{-3 + 1.2 * t, 0.4}, {3 - 1.2 * t, -0.4}}, t);  // side by side at 2.5 s
@@ -111,7 +112,7 @@ TEST(MoverTracker, TellsThoseApartWhoCross) {
   EXPECT_NEAR(follower.near({-3, -0.4}, 5).velocity.x(), -1.2, 0.2);
 }
 
-TEST(MoverTracker, WhoStandsStandsAndIsKnownBetterThanWhoIsNew) {
+TEST(DynamicObstacleTracker, WhoStandsStandsAndIsKnownBetterThanWhoIsNew) {
   Follower follower;
   follower.scan({{2, 1}}, 0);
   ASSERT_EQ(follower.at(0).size(), 1u);
@@ -124,7 +125,7 @@ TEST(MoverTracker, WhoStandsStandsAndIsKnownBetterThanWhoIsNew) {
   }
 }
 
-TEST(MoverTracker, ForgetsWhoIsNotSeenAnyMore) {
+TEST(DynamicObstacleTracker, ForgetsWhoIsNotSeenAnyMore) {
   Follower follower;
   for (double t = 0; t < 2; t += 0.5) follower.scan({{t, 0}}, t);
   follower.scan({}, 3);
@@ -137,17 +138,17 @@ TEST(MoverTracker, ForgetsWhoIsNotSeenAnyMore) {
   EXPECT_TRUE(follower.at(4).empty());
 }
 
-TEST(MoverTracker, FollowsOnlyClassesThatMove) {
+TEST(DynamicObstacleTracker, FollowsOnlyClassesThatMove) {
   Follower follower;
   follower.scan({{1, 0}}, 0, kWall);
   EXPECT_TRUE(follower.at(0).empty());
-  MoverOptions both;
+  DynamicObstacleOptions both;
   both.classes = "wall, person";
   Follower other(both);
   other.scan({{1, 0}}, 0, kWall);
   EXPECT_EQ(other.at(0).size(), 1u);
   both.classes = "wall,ghost";
-  EXPECT_THROW(MoverTracker(both, table()), std::invalid_argument);
+  EXPECT_THROW(DynamicObstacleTracker(both, table()), std::invalid_argument);
   both.classes = "";
   Follower nobody(both);
   nobody.scan({{1, 0}}, 0);

@@ -88,7 +88,6 @@ struct Trial {
   simulated_drive::DriveRecord record;
   std::size_t explored = 0;               ///< frontiers
   double badDriven = 0, badFollowed = 0;  ///< m off the best class: driven, and along its paths
-  double badBest = 0;                     ///< m off the best class along the task's path
   double processorSeconds = 0;
 
   /** What is not as it has to be; empty: nothing. */
@@ -99,7 +98,7 @@ struct Trial {
 Trial runTrial(const simulated_drive::DriveConfig& config, synthetic_world::World& world,
                const colored_graph::ClassOrder& order, const Task& task);
 
-/** A line for each drive. */
-std::string toCsv(const std::vector<Trial>& trials);
+/** The task, what comes of its drive, and the fault. */
+nlohmann::json toJson(const Trial& trial, const colored_graph::ClassOrder& order);
 
 }  // namespace drive_study

@@ -15,7 +15,7 @@
 namespace semantic_driving {
 
 /** How those who move are told from the points of scans, and followed. */
-struct MoverOptions {
+struct DynamicObstacleOptions {
   std::string classes = "person";  ///< names, with commas between; empty: nobody is followed
   double radius = 12;  ///< how far from the sensor, meters; Navigator sets it by the vehicle
 
@@ -25,7 +25,7 @@ struct MoverOptions {
 };
 
 /** Somebody who moves, or could. */
-struct Mover {
+struct DynamicObstacle {
   Eigen::Vector2d place = Eigen::Vector2d::Zero();     ///< meters
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< m/s; zero: stands
   double size = 0;                                     ///< radius, meters
@@ -34,16 +34,17 @@ struct Mover {
   bool stands() const { return velocity.isZero(); }
   Eigen::Vector2d placeAfter(double seconds) const { return place + seconds * velocity; }
 };
-using Movers = std::vector<Mover>;
+using DynamicObstacles = std::vector<DynamicObstacle>;
 
 /** Follows people and vehicles from scan to scan. Points of their classes make clusters, and the
  * nearest goes with the nearest. Each has a Kalman filter of constant velocity and white
  * acceleration (Bar-Shalom, Li and Kirubarajan, "Estimation with applications to tracking and
  * navigation", 2001, 6.3.2). Nothing but scans is asked. */
-class MoverTracker {
+class DynamicObstacleTracker {
  public:
   /** \throw std::invalid_argument bad options, or a name that no class has. */
-  MoverTracker(const MoverOptions& options, const semantic_types::ClassTable& classes);
+  DynamicObstacleTracker(const DynamicObstacleOptions& options,
+                         const semantic_types::ClassTable& classes);
 
   /** By class: whether it moves. */
   const std::vector<bool>& isMover() const { return m_isMover; }
@@ -62,7 +63,7 @@ class MoverTracker {
   std::vector<Eigen::Vector2d> takeLeft() { return std::exchange(m_left, {}); }
 
   /** Where they are at a time at or after the last update(), map frame. */
-  Movers at(double seconds) const;
+  DynamicObstacles at(double seconds) const;
 
  private:
   struct Track {
@@ -78,7 +79,7 @@ class MoverTracker {
   static void predict(Track& track, double seconds);
   static void correct(Track& track, const Eigen::Vector2d& middle);
 
-  MoverOptions m_options;
+  DynamicObstacleOptions m_options;
   std::vector<bool> m_isMover;  ///< by class id
   std::vector<Eigen::Vector2d> m_seen;
   std::vector<Track> m_tracks;
@@ -107,7 +108,7 @@ class MoverTracker {
  * \param movers now, map frame
  * \return 0 to wanted, m/s */
 double separationSpeed(const std::function<mrpt::math::TPose2D(double)>& poseAfter, double speed,
-                       double acceleration, double wanted, const Movers& movers,
+                       double acceleration, double wanted, const DynamicObstacles& movers,
                        const semantic_planning::Footprint& footprint, const DriveOptions& options);
 
 }  // namespace semantic_driving

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr int kFaults = 2;              // exit status
 constexpr double kStartsWithin = 0.84;  // of how far exploring goes from the world's middle
-const std::vector<std::string> kFiles = {"study.csv", "exploration.csv"};
+const std::vector<std::string> kFiles = {"study.json", "exploration.csv"};
 
 struct Cli {
   fs::path order, config, output, weights;
@@ -68,8 +68,10 @@ void print(const Trial& trial) {
     if (!reason.empty()) notes() << "  " << reason << std::endl;
 }
 
-void studyScene(const std::string& name, const Cli& cli, const simulated_drive::DriveConfig& config,
-                const StopRequest& stop, std::vector<Trial>& trials) {
+/** \return the number of faults */
+int studyScene(const std::string& name, const Cli& cli, const simulated_drive::DriveConfig& config,
+               const StopRequest& stop, nlohmann::json& trials) {
+  int faults = 0;
   synthetic_world::Scene scene = synthetic_world::makeScene(name, cli.sceneSeed);
   const auto order = semantic_planning::loadClassOrder(cli.order, synthetic_world::classTable());
   TaskDraw draw(scene.world, order, config.planner.vehicle, cli.tasks);
@@ -84,8 +86,10 @@ void studyScene(const std::string& name, const Cli& cli, const simulated_drive::
     trial.scene = name;
     trial.number = i;
     print(trial);
-    trials.push_back(std::move(trial));
+    trials.push_back(toJson(trial, order));
+    faults += !trial.fault().empty();
   }
+  return faults;
 }
 
 ExploreTask exploreTask(const Cli& cli) {
@@ -153,12 +157,12 @@ int run(const Cli& cli) {
   const auto config = simulated_drive::loadDriveConfig(cli.config);
   if (cli.explore) return runExploring(cli, config, stop);
   strict_files::OutputFolder output(cli.output);
-  std::vector<Trial> trials;
-  for (const std::string& scene : cli.scenes) studyScene(scene, cli, config, stop, trials);
-  strict_files::writeText(output.staged("study.csv"), toCsv(trials));
+  nlohmann::json trials = nlohmann::json::array();
+  int faults = 0;
+  for (const std::string& scene : cli.scenes)
+    faults += studyScene(scene, cli, config, stop, trials);
+  writeJson(output.staged("study.json"), trials);
   output.commit(kFiles);
-  const auto faults = std::count_if(trials.begin(), trials.end(),
-                                    [](const Trial& t) { return !t.fault().empty(); });
   notes() << faults << " of " << trials.size() << " drives with a fault\n";
   return faults == 0 ? 0 : kFaults;
 }
