@@ -85,6 +85,17 @@ TEST(LazyEdges, fewAreEvaluated) {
   EXPECT_LT(evaluated, edges / 3);  // a search that evaluates what it expands needs more
 }
 
+TEST(LazyEdges, repairsTakeNoLongerThanEvaluationsWould) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    PlaneGraph plane = randomPlaneGraph(seed, 800, 30000, 30, 4);
+    const CostModel model{ClassOrder(5, {{0}, {1}, {2}, {3}, {4}}), EdgeModel::Profile};
+    LazyWorld world(plane);
+    const PathResult result = findColoredPath(world.graph, 0, 1, model, world.options);
+    EXPECT_EQ(costOf(result), oracles::tupleDijkstra(plane.graph, model, 0, 1)) << seed;
+    EXPECT_LT(result.statistics.expansions, 9 * plane.graph.edgeCount()) << seed;
+  }
+}
+
 TEST(LazyEdges, anEdgeThatHasBecomeUselessIsNotEvaluated) {
   ColoredGraph graph(1);
   for (int v = 0; v < 4; ++v) graph.addVertex(0);

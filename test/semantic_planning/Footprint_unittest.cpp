@@ -142,7 +142,7 @@ TEST(Footprint, inscribedRadiusIsTheNearestOutlinesDistanceFromAnOriginWithin) {
 TEST(Footprint, discsCoverEveryPointOfIt) {
   EXPECT_TRUE(rc::check([] {
     const Footprint outline = anyConvex();
-    const auto discs = outline.coveringDiscs();
+    const auto discs = outline.coveringDiscs(number(0, 2));
     for (int k = 0; k < 100; ++k) {
       double sum = 0;
       Eigen::Vector2d p = Eigen::Vector2d::Zero();
@@ -163,6 +163,14 @@ TEST(Footprint, discsOfARectangleStickOutByATenthOfItsWidth) {
   for (const Disc& d : Footprint::rectangle(-0.9, 3.4, 1.7).coveringDiscs()) {
     EXPECT_LE(d.radius, 0.85 + 0.11 * 1.7);
     EXPECT_DOUBLE_EQ(d.y, 0);
+  }
+}
+
+TEST(Footprint, pairsOfDiscsStickOutLessAtFrontAndBack) {
+  for (const Disc& d : Footprint::rectangle(-0.9, 3.4, 1.7).coveringDiscs(0.2)) {
+    EXPECT_LE(d.x + d.radius, 3.4 + 0.15 * 1.7);
+    EXPECT_GE(d.x - d.radius, -0.9 - 0.15 * 1.7);
+    EXPECT_LE(std::abs(d.y) + d.radius, 0.85 + 0.05 * 1.7);
   }
 }
 

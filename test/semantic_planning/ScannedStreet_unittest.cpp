@@ -135,3 +135,17 @@ TEST(ScannedStreet, whereFewColumnsWereHitThoseBeyondTellAForbiddenClass) {
   EXPECT_EQ(classOfMiddle(false), PaintedWorld::Road);
   EXPECT_EQ(classOfMiddle(true), PaintedWorld::Mud);
 }
+
+TEST(ScannedStreet, forbiddenClassesThatDifferDoNotAddUp) {
+  const colored_graph::ClassOrder order(5, {{PaintedWorld::Road, 0}});
+  const auto classOfMiddle = [&](PaintedWorld::Class left, PaintedWorld::Class right) {
+    PaintedWorld world;
+    world.floor(-1, 1, -1, 1, PaintedWorld::Road).voxel(0, 0, -1, PaintedWorld::Mud);
+    for (const int y : {-1, 1}) world.voxel(-1, y, -1, left).voxel(1, y, -1, right);
+    const Ground ground(world.map(), VehicleOptions(), GroundOptions(), order);
+    constexpr int kMiddle = semantic_octree::kKeyOfOrigin;
+    return ground.near({kMiddle, kMiddle}, kMiddle - 1, 0)->classId;
+  };
+  EXPECT_EQ(classOfMiddle(PaintedWorld::Grass, PaintedWorld::Wall), PaintedWorld::Road);
+  EXPECT_EQ(classOfMiddle(PaintedWorld::Mud, PaintedWorld::Mud), PaintedWorld::Mud);
+}

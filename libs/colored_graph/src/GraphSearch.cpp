@@ -23,7 +23,7 @@ class ColoredReplanner::Impl {
 /** LPA* over cost vectors, from the goal towards the start. The names g and rhs are the paper's.
  *
  * Invariants between calls: rhs(v) = min over edges (v,w) of cost + g(w), 0 at the goal; node.next
- * is a w that gives this minimum; v is queued exactly if g(v) != rhs(v). */
+ * gives this minimum; v is queued exactly if g(v) != rhs(v). */
 template <int N>
 class ColoredReplanner::Search : public Impl {
  public:
@@ -66,7 +66,7 @@ class ColoredReplanner::Search : public Impl {
     Cost rhs = Cost::infinite();
     Length distance = 0;      // lower bound of the length from the start number `distanceOf`
     unsigned distanceOf = 0;  // 0: none yet
-    VertexId next = kNoVertex;
+    Incidence next{kNoVertex, kNoEdge};
     const Cost& least() const { return std::min(g, rhs); }
   };
 
@@ -103,8 +103,18 @@ class ColoredReplanner::Search : public Impl {
           return !m_costs(i.edge, i.neighbor).isInfinite();
         });
       if (const auto stopped = evaluateAlongPath(stop, again)) return *stopped;
+      if (again) lookFirst();
     }
     return SearchStatus::Found;
+  }
+
+  /** Edges on best paths alone are the fewest, but each that is worse than its bound may make a
+   * search of the whole graph. That ends when it has taken as long as all edges take. */
+  void lookFirst() {
+    constexpr std::size_t kExpansions = 7;  // in the time of an evaluated edge of a roadmap
+    if (m_looksFirst || m_statistics.expansions < kExpansions * m_graph.edgeCount()) return;
+    m_looksFirst = true;
+    startOver();
   }
 
   // --- What happened since the last call
@@ -164,15 +174,24 @@ class ColoredReplanner::Search : public Impl {
       const Node& start = m_nodes[m_start];
       const bool consistent = start.g == start.rhs;
       if (consistent && !(m_queue.top().key < key(m_start))) break;
-      if (const auto stopped = stop.inLoop()) return stopped;
-      expand(m_queue.top().vertex);
+      const VertexId v = m_queue.top().vertex;
+      const auto stopped = mayEvaluate(v) ? stop.now() : stop.inLoop();
+      if (stopped) return stopped;
+      expand(v);
     }
     return std::nullopt;
   }
 
+  /** Whether its edge is looked at before anything hangs on it. */
+  bool mayEvaluate(VertexId v) const {
+    const Node& node = m_nodes[v];
+    return m_looksFirst && node.rhs < node.g && v != m_goal && isUnevaluated(node.next.edge);
+  }
+
   void expand(VertexId v) {
-    ++m_statistics.expansions;
     Node& node = m_nodes[v];
+    if (mayEvaluate(v) && turnsOutWorse(node.next.edge, node.next.neighbor)) return;
+    ++m_statistics.expansions;
     if (node.rhs < node.g) {
       node.g = node.rhs;
       m_queue.remove(v);
@@ -181,7 +200,7 @@ class ColoredReplanner::Search : public Impl {
       node.g = Cost::infinite();
       enqueue(v);
       for (const Incidence& i : m_graph.incident(v))
-        if (m_nodes[i.neighbor].next == v) repairRhs(i.neighbor);
+        if (m_nodes[i.neighbor].next.neighbor == v) repairRhs(i.neighbor);
     }
   }
 
@@ -193,7 +212,7 @@ class ColoredReplanner::Search : public Impl {
     const Cost cost = before + m_costs(i.edge, next);
     if (!(cost < node.rhs)) return;
     node.rhs = cost;
-    node.next = next;
+    node.next = {next, i.edge};
     enqueue(i.neighbor);
   }
 
@@ -202,7 +221,7 @@ class ColoredReplanner::Search : public Impl {
     Node& node = m_nodes[v];
     const auto [cost, incidence] = bestStep(v);
     node.rhs = cost;
-    node.next = incidence.neighbor;
+    node.next = incidence;
     enqueue(v);
   }
 
@@ -254,6 +273,21 @@ class ColoredReplanner::Search : public Impl {
     return edges;
   }
 
+  bool isUnevaluated(EdgeId e) const { return m_graph.edge(e).state == EdgeState::Unevaluated; }
+
+  /** Evaluates an edge that leads to a vertex. \return whether it is worse than its lower bound;
+   * then its ends are repaired */
+  bool turnsOutWorse(EdgeId e, VertexId to) {
+    const Cost bound = m_costs(e, to);
+    ++m_statistics.edgesEvaluated;
+    evaluateEdge(m_graph, e, m_options.evaluate);
+    m_seen = m_graph.changes().end();
+    if (m_costs(e, to) == bound) return false;
+    repairRhs(m_graph.edge(e).a);
+    repairRhs(m_graph.edge(e).b);
+    return true;
+  }
+
   /** Evaluates the path's edges from the start on; stops, and asks for another search, at the first
    * that is worse than its lower bound. */
   std::optional<SearchStatus> evaluateAlongPath(const StopCheck& stop, bool& again) {
@@ -261,17 +295,10 @@ class ColoredReplanner::Search : public Impl {
     VertexId to = m_start;
     for (const EdgeId e : bestEdges()) {
       to = m_graph.edge(e).other(to);
-      if (m_graph.edge(e).state != EdgeState::Unevaluated) continue;
+      if (!isUnevaluated(e)) continue;
       if (const auto stopped = stop.now()) return stopped;
-      const Cost bound = m_costs(e, to);
-      ++m_statistics.edgesEvaluated;
-      evaluateEdge(m_graph, e, m_options.evaluate);
-      m_seen = m_graph.changes().end();
-      if (m_costs(e, to) == bound) continue;
-      repairRhs(m_graph.edge(e).a);
-      repairRhs(m_graph.edge(e).b);
-      again = true;
-      break;
+      again = turnsOutWorse(e, to);
+      if (again) break;
     }
     return std::nullopt;
   }
@@ -288,6 +315,7 @@ class ColoredReplanner::Search : public Impl {
   bool m_startMoved = false;
   unsigned m_startNumber = 1;
   SearchStatistics m_statistics;
+  bool m_looksFirst = false;
 };
 
 PathResult ColoredGraphSearch::search(ColoredGraph& graph, VertexId start, VertexId goal,

@@ -13,7 +13,9 @@ namespace colored_graph {
  * the path are looked at again. It follows the graph's change log, so nobody has to tell it what
  * changed. Edges are lazy: unevaluated ones count with their lower bound. Those on the best path
  * are evaluated from the start on, and the path is repaired until none is left. A path that is
- * optimal under lower bounds and is evaluated is optimal (LazySP, Dellin and Srinivasa 2016). */
+ * optimal under lower bounds and is evaluated is optimal (LazySP, Dellin and Srinivasa 2016). Where
+ * repairs have taken as long as all evaluations would, a vertex's edge is evaluated before it is
+ * expanded. */
 class ColoredReplanner {
  public:
   /** \param graph must outlive the replanner.

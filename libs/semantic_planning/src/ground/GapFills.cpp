@@ -91,8 +91,8 @@ class GapFillSearch {
 
 /** Classes of what is around a surface, within a step in height. */
 struct Votes {
-  std::array<ClassId, (2 * kReachOfClasses + 1) * (2 * kReachOfClasses + 1)> allowed;
-  int numAllowed = 0, numForbidden = 0;
+  std::array<ClassId, (2 * kReachOfClasses + 1) * (2 * kReachOfClasses + 1)> classes;
+  int num = 0;
 
   Votes(const TileWindow<ColumnTile>& columns, Column c, int z, int reach,
         const GroundShape& shape) {
@@ -103,30 +103,38 @@ struct Votes {
         const Run* run = std::find_if(runs.begin(column), runs.end(column), [&](const Run& r) {
           return std::abs(r.top - z) <= shape.step;
         });
-        if (run == runs.end(column)) continue;
-        if (shape.ranks[run->topClass] == colored_graph::kForbidden)
-          ++numForbidden;
-        else
-          allowed[static_cast<std::size_t>(numAllowed++)] = run->topClass;
+        if (run != runs.end(column)) classes[static_cast<std::size_t>(num++)] = run->topClass;
       }
   }
-  ClassId mostFrequent() const {
-    const auto end = allowed.begin() + numAllowed;
-    return *std::max_element(allowed.begin(), end, [&](ClassId a, ClassId b) {
-      return std::count(allowed.begin(), end, a) < std::count(allowed.begin(), end, b);
-    });
+  int of(ClassId id) const {
+    return static_cast<int>(std::count(classes.begin(), classes.begin() + num, id));
+  }
+  /** The most frequent one of those that are allowed, or of the others; or none. */
+  std::optional<ClassId> mostFrequent(const GroundShape& shape, bool allowed) const {
+    std::optional<ClassId> most;
+    for (int i = 0; i < num; ++i) {
+      const ClassId id = classes[static_cast<std::size_t>(i)];
+      const bool isAllowed = shape.ranks[id] != colored_graph::kForbidden;
+      if (isAllowed == allowed && (!most || of(id) > of(*most))) most = id;
+    }
+    return most;
   }
 };
 
 /** The class of a surface that is of a forbidden one: its own, unless most of what is around it is
- * of others. Where few columns next to it have any, those beyond count, too. */
+ * of others, or one of these is more frequent than each that is forbidden: wrong labels differ.
+ * Where few columns next to it have any, those beyond count, too. */
 ClassId classAmong(const TileWindow<ColumnTile>& columns, Column c, const Surface& s,
                    const GroundShape& shape) {
   constexpr int kFew = 5;  // most of nine
   for (int reach = 1; reach <= kReachOfClasses; ++reach) {
     const Votes votes(columns, c, s.z, reach, shape);
-    if (votes.numAllowed > votes.numForbidden) return votes.mostFrequent();
-    if (votes.numAllowed + votes.numForbidden >= kFew) break;
+    const auto isAllowed = [&](ClassId id) { return shape.ranks[id] != colored_graph::kForbidden; };
+    const auto end = votes.classes.begin() + votes.num;
+    const auto numAllowed = std::count_if(votes.classes.begin(), end, isAllowed);
+    const auto best = votes.mostFrequent(shape, true), worst = votes.mostFrequent(shape, false);
+    if (best && (2 * numAllowed > votes.num || votes.of(*best) > votes.of(*worst))) return *best;
+    if (votes.num >= kFew) break;
   }
   return s.classId;
 }

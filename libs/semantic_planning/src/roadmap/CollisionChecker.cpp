@@ -194,7 +194,7 @@ CollisionChecker::CollisionChecker(const Ground& ground, const VehicleOptions& v
     return ground.step() + static_cast<int>(std::ceil(rise * distance / voxel));
   };
   m_reach = vehicle.wheelTrack / 2;
-  const std::vector<Disc> discs = vehicle.footprint.coveringDiscs();
+  const std::vector<Disc> discs = vehicle.footprint.coveringDiscs(voxel);
   double fastest = 1;  // of the discs' centers, in the origin's speed
   for (const Disc& disc : discs) fastest = std::max(fastest, speedOf(disc, vehicle.turningRadius));
   m_piece = std::min(0.5, 1 / fastest) * voxel;

@@ -128,22 +128,31 @@ double Footprint::inscribedRadius() const {
   return std::max(0.0, least);
 }
 
-std::vector<Disc> Footprint::coveringDiscs() const {
+std::vector<Disc> Footprint::coveringDiscs(double most) const {
   const auto [back, front] = std::minmax_element(
       begin(), end(), [](const auto& l, const auto& r) { return l.x() < r.x(); });
   const double low = back->x(), length = front->x() - low;
   const Extent whole = extentBetween(m_corners, low, front->x());
+  const double width = whole.high - whole.low;
   // Slices half as long as wide: the discs stick out by 12 % of half the width.
-  const int slices =
-      std::max(1, std::min(20, static_cast<int>(std::ceil(2 * length / (whole.high - whole.low)))));
+  int slices = std::max(1, std::min(20, static_cast<int>(std::ceil(2 * length / width))));
   std::vector<Disc> discs;
-  for (int i = 0; i < slices; ++i) {
-    const double from = low + i * length / slices, to = low + (i + 1) * length / slices;
-    const Extent extent = extentBetween(m_corners, from, to);
-    const double width = extent.high - extent.low;
-    discs.push_back(
-        {(from + to) / 2, (extent.low + extent.high) / 2, std::hypot(to - from, width) / 2});
+  const auto cover = [&](double from, double to, int across) {
+    const Extent extent = extentBetween(m_corners, low + from, low + to);
+    const double share = (extent.high - extent.low) / across;
+    for (int i = 0; i < across; ++i)
+      discs.push_back({low + (from + to) / 2, extent.low + (i + 0.5) * share,
+                       std::hypot(to - from, share) / 2});
+  };
+  double ends = 0;
+  if (std::hypot(length / slices, width) - length / slices > 2 * most) {
+    ends = std::min(0.3 * width, length / 2);  // pairs stick out by 14 % of the width
+    cover(0, ends, 2);
+    cover(length - ends, length, 2);
+    --slices;
   }
+  const double slice = (length - 2 * ends) / slices;
+  for (int i = 0; i < slices; ++i) cover(ends + i * slice, ends + (i + 1) * slice, 1);
   return discs;
 }
 

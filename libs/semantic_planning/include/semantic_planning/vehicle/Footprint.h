@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace semantic_planning {
@@ -39,9 +40,10 @@ class Footprint {
   /** The radius of the largest disc around the origin that the footprint covers, meters; 0 if the
    * origin is outside. */
   double inscribedRadius() const;
-  /** Discs that together cover the footprint: a vehicle whose discs are free is free. They stick
-   * out by at most a tenth of its width on long vehicles, more on short ones. */
-  std::vector<Disc> coveringDiscs() const;
+  /** Discs that together cover the footprint: a vehicle whose discs are free is free. Beside long
+   * vehicles they stick out by at most a tenth of the width. \param most where one disc would
+   * stick out by more than this at the front or back, there are two beside each other */
+  std::vector<Disc> coveringDiscs(double most = std::numeric_limits<double>::infinity()) const;
 
  private:
   /** From a corner to the next one. */
