@@ -253,17 +253,14 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   return builder.summary();
 }
 
-/** A map is worth keeping where it cannot be drawn: says why not instead of throwing. */
-std::string drawPictures(const SemanticOcTree& tree, const Config& config,
-                         const OutputFolder& output) {
-  map_pictures::savePicture(renderTopView(tree, config.pictures), output.staged("top.png"));
-  try {
-    map_pictures::savePicture(renderPerspective(tree, config.pictures, config.view),
-                              output.staged("view.png"));
-  } catch (const std::exception& e) {
-    return "view.png: " + strict_files::messageOf(e);
-  }
-  return {};
+/** When all else has its place: OpenGL's library may end the process where memory is short.
+ * \throw std::runtime_error naming the picture */
+void drawView(const SemanticOcTree& tree, const Config& config, OutputFolder& output) try {
+  map_pictures::savePicture(renderPerspective(tree, config.pictures, config.view),
+                            output.staged("view.png"));
+  output.commit({"view.png"});
+} catch (const std::exception& e) {
+  throw std::runtime_error("view.png: " + strict_files::messageOf(e));
 }
 
 void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFolder& output) {
@@ -273,11 +270,11 @@ void writeCompressed(CSemanticOctoMap& map, const Config& config, const OutputFo
                             output.staged("compressed.png"));
 }
 
-/** Also its pictures, and the compressed map. \return what is wrong with the pictures */
-std::string writeMap(CSemanticOctoMap& map, const Config& config, const OutputFolder& output) {
+/** Also its picture from above, and the compressed map. */
+void writeMap(CSemanticOctoMap& map, const Config& config, const OutputFolder& output) {
   saveTree(map.tree(), output.staged("map.semantic"));
   if (config.abstraction.isSet()) writeCompressed(map, config, output);
-  return drawPictures(map.tree(), config, output);
+  map_pictures::savePicture(renderTopView(map.tree(), config.pictures), output.staged("top.png"));
 }
 
 int run(const Cli& cli) {
@@ -299,14 +296,10 @@ int run(const Cli& cli) {
 
   const Summary summary = buildMap(cli, config, stop, live ? &*live : nullptr, map, output);
   writeJson(output.staged("summary.json"), toJson(summary, map.tree(), !map.folder()));
-  std::string problem;
-  if (map.folder())
-    map.folder()->save();
-  else
-    problem = writeMap(map, config, output);
+  map.folder() ? map.folder()->save() : writeMap(map, config, output);
   output.commit(kFiles);
-  if (!problem.empty()) throw std::runtime_error(problem);
   const auto& tree = map.tree();
+  if (!map.folder()) drawView(tree, config, output);
   notes() << cli.output.string() << ": voxels of " << tree.getResolution() << " m, "
           << tree.numClasses() << (tree.numClasses() == 1 ? " class, " : " classes, ")
           << tree.getNumLeafNodes() << " leaves, " << strict_files::sizeText(tree.memoryUsage())

@@ -38,6 +38,16 @@ TEST_F(Rawlog2SemanticMap, scansBecomeAMapASummaryAndTwoPictures) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "out"), {}), 4);
 }
 
+TEST_F(Rawlog2SemanticMap, isInPlaceBeforeOpenGlMayEndTheProcess) {
+  runCommand("cd '" + folder.path().string() +
+             "'; mkfifo waits; __EGL_VENDOR_LIBRARY_FILENAMES=$PWD/waits " MSO_BIN_DIR
+             "/rawlog2semantic-map -q --config small.ini -o out small.rawlog & "
+             "for i in $(seq 600); do test ! -e out/map.semantic && kill -0 $! || break; "
+             "sleep 0.1; done; kill -9 $!");
+  EXPECT_FALSE(map().empty());
+  EXPECT_EQ(summary()["observations"]["inserted"], 1);
+}
+
 TEST_F(Rawlog2SemanticMap, summaryCountsObservationsPointsAndVoxels) {
   ASSERT_EQ(run().status, 0);
   const auto s = summary();

@@ -119,15 +119,18 @@ class ImageHeader {
   }
   /** By the first bytes. None, too: what OpenCV may take for something else. */
   Kind kind() const { return m_kind; }
-  /** Bytes hold eight packed pixels at most; zlib has 1032 of them in one, JPEG's empty blocks 128.
-   * \throw std::runtime_error more pixels than the file's bytes can hold. */
+  /** Pixels take three bytes at most in JPEG; in PNG 1, 3, 1, 2, or 4, or twice as many.
+   * \throw std::runtime_error unpacked, they take more than kMost and kPerByte times the file. */
   void checkSize() const {
-    const std::uint64_t mostEach = 8 * (m_kind == Kind::Png ? 1032 : 128);
+    constexpr std::uint64_t kMost = 64 << 20, kPerByte = 64;
+    const bool isPng = m_kind == Kind::Png;
+    const std::uint64_t channels = isPng ? "\1\1\3\1\2\1\4\1"[number(25, 1) & 7] : 3;
+    const std::uint64_t bytes = isPng && number(24, 1) == 16 ? 2 * channels : channels;
     const auto [columns, rows] = size();
-    if (columns > 0 && rows > mostEach * m_fileSize / columns)
+    if (columns > 0 && rows > (kMost + kPerByte * m_fileSize) / bytes / columns)
       throw std::runtime_error("says that it has " + std::to_string(columns) + " x " +
-                               std::to_string(rows) + " pixels, more than its " +
-                               std::to_string(m_fileSize) + " bytes can hold");
+                               std::to_string(rows) + " pixels, more than a file of " +
+                               std::to_string(m_fileSize) + " bytes may have");
   }
 
  private:
