@@ -268,6 +268,15 @@ TEST(SmoothedMap, ofRightLabelsAnswersForVoxelsThatWereNotHitAndLosesNothing) {
     }
 }
 
+TEST(FlatCalibration, ofRightLabelsOfAHundredClassesIsRight) {
+  SKIP_WITHOUT_DATA("replica_apartment_0");
+  const SplitFrames flat(readReplica(sharedDataDir() / "replica_apartment_0", 55),
+                         shippedTable("replica_apartment.yaml"), clean(0.05));
+  const Evaluation e = flat.evaluate();
+  EXPECT_LE(e.logLoss(), 0.06);
+  EXPECT_LE(e.calibrationError(), 0.010);
+}
+
 TEST(SmoothedMap, ofAFlatFillsGapsAndKeepsBordersWithinHalfAPoint) {
   SKIP_WITHOUT_DATA("replica_apartment_0");
   for (const double resolution : {0.1, 0.2}) {

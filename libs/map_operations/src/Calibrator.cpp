@@ -22,6 +22,8 @@ constexpr double kLabelsBefore = 100;
 /** Labels of each class that count as seen at first, right as often as the filter's accuracy says.
  * A matrix is cautious where a class is rare; a fit does not state the accuracy once more. */
 constexpr double kLabelsOfMatrix = 1000, kLabelsOfFit = 20;
+/** Where labels are right, no more than so many of all classes: of many, most are rare. */
+constexpr double kLabelsOfRight = 400;
 /** Labels of a voxel that are too few to outvote each other. */
 constexpr std::size_t kFew = 2;
 constexpr double kSteps = 256;
@@ -171,7 +173,8 @@ std::function<Calibration()> Calibrator::fitLater(const SemanticOcTree& map) con
     const LabeledVoxels seen = labels.seenAgain();
     const int numClasses = labels.m_numClasses;
     std::vector<LabelProcess> processes;
-    processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit);
+    const double before = err ? kLabelsOfFit : std::min(kLabelsOfFit, kLabelsOfRight / numClasses);
+    processes.emplace_back(seen, numClasses, accuracy, before);
     if (err) processes.emplace_back(seen, numClasses, accuracy, kLabelsOfFit, kLabelsOfMatrix);
     const double asRight = 1 - processes[0].leastCorrelation();
     const auto classesOf = [&processes, asRight](const std::string& ofVoxel) {
