@@ -114,11 +114,7 @@ TEST(FailingAllocations, whileAMapOfOctomapsIsReadAreErrors) {
   const auto file = folder.write("a.ot", out.str());
   std::size_t leaves = 0;
   EXPECT_GT(failEachAllocation(
-                [] {},
-                [&] {
-                  const auto tree = semantic_map::readOctomapFile(file);
-                  leaves = semantic_octree::fromOcTree(*tree, threeClasses()).getNumLeafNodes();
-                },
+                [] {}, [&] { leaves = semantic_map::importOctomapFile(file).getNumLeafNodes(); },
                 [&] { EXPECT_EQ(leaves, 0u); }),
             3);
   EXPECT_EQ(leaves, smallMap().tree().getNumLeafNodes());

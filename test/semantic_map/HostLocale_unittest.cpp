@@ -54,7 +54,7 @@ TEST(HostLocale, leavesNoTraceInFilesAndTheyAreReadAsTheyAre) {
   const auto tum = folder.write("robot.tum", "1234567.5 1.5 2.25 -0.5 0 0 0 1\n");
   const CommaHost host;
   EXPECT_EQ(exportsOf(tree), classic);
-  EXPECT_EQ(readOctomapFile(octomap)->getResolution(), 0.125);
+  EXPECT_EQ(importOctomapFile(octomap).getResolution(), 0.125);
   const auto trajectory = labeled_cloud::loadTumTrajectory(tum);
   ASSERT_EQ(trajectory.size(), 1u);
   EXPECT_EQ(trajectory.poses().begin()->second.y(), 2.25);

@@ -17,7 +17,7 @@ std::string oneNode(float logOdds) {
 }
 
 std::string errorReading(const std::filesystem::path& file) {
-  const std::string error = errorOf([&] { semantic_map::readOctomapFile(file); });
+  const std::string error = errorOf([&] { semantic_map::importOctomapFile(file); });
   EXPECT_TRUE(error.empty() || contains(error, file.string() + ": ")) << error;
   return error;
 }
@@ -26,9 +26,9 @@ std::string errorReading(const std::filesystem::path& file) {
 
 TEST(ImportOctomap, takesFilesWithFiniteLogOddsOnly) {
   const TemporaryFolder folder;
-  const auto tree = semantic_map::readOctomapFile(folder.write("a.ot", oneNode(0.5f)));
-  ASSERT_TRUE(tree->getRoot());
-  EXPECT_EQ(tree->getRoot()->getLogOdds(), 0.5f);
+  const auto map = semantic_map::importOctomapFile(folder.write("a.ot", oneNode(0.5f)));
+  ASSERT_TRUE(map.root());
+  EXPECT_EQ(map.root().getLogOdds(), 0.5f);
   for (const float bad : {std::nanf(""), INFINITY, -INFINITY})
     EXPECT_TRUE(contains(errorReading(folder.write("a.ot", oneNode(bad))), "is not finite")) << bad;
   ASSERT_EQ(mkfifo((folder / "a.bt").c_str(), 0600), 0);

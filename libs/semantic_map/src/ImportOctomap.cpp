@@ -1,5 +1,6 @@
 #include <map_operations/MapOperations.h>
 #include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_types/ClassTable.h>
@@ -144,39 +145,32 @@ Checked checked(std::istream& in) {
   return file;
 }
 
-/** What `make` makes of a file's content; what goes wrong names the file. */
-template <class Make>
-auto readFile(const std::filesystem::path& file, const Make& make) {
+semantic_octree::SemanticOcTree mapOf(const Checked& content,
+                                      const semantic_octree::SemanticOcTree* like) {
+  const Header& header = content.header;
+  const auto filter = like ? like->filterParameters() : semantic_octree::FilterParameters();
+  const auto& classes = like                     ? like->classes()
+                        : header.classes.empty() ? CSemanticOctoMap::occupancyOnly()
+                                                 : header.classes;
+  if (header.isColored() && !header.binary && (like || !header.classes.empty()))
+    return fromOcTree(*content.tree<octomap::ColorOcTree>(content.nodes), classes, filter);
+  return fromOcTree(*content.occupancy(), classes, filter);
+}
+
+}  // namespace
+
+semantic_octree::SemanticOcTree importOctomapFile(const std::filesystem::path& file,
+                                                  const semantic_octree::SemanticOcTree* like) {
   if (std::filesystem::is_fifo(file) || std::filesystem::is_character_file(file))
     throw std::runtime_error(file.string() + ": it is no file, but a device or a pipe");
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file))
     throw std::runtime_error(file.string() + ": cannot be read");
   try {
-    return make(checked(in));
+    return mapOf(checked(in), like);
   } catch (const std::exception& e) {
     throw std::runtime_error(file.string() + ": " + e.what());
   }
-}
-
-}  // namespace
-
-std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file) {
-  return readFile(file, [](const Checked& content) { return content.occupancy(); });
-}
-
-semantic_octree::SemanticOcTree importOctomapFile(const std::filesystem::path& file,
-                                                  const semantic_octree::SemanticOcTree* like) {
-  return readFile(file, [like](const Checked& content) {
-    const Header& header = content.header;
-    const auto filter = like ? like->filterParameters() : semantic_octree::FilterParameters();
-    const auto& classes = like                     ? like->classes()
-                          : header.classes.empty() ? CSemanticOctoMap::occupancyOnly()
-                                                   : header.classes;
-    if (header.isColored() && !header.binary && (like || !header.classes.empty()))
-      return fromOcTree(*content.tree<octomap::ColorOcTree>(content.nodes), classes, filter);
-    return fromOcTree(*content.occupancy(), classes, filter);
-  });
 }
 
 }  // namespace semantic_map

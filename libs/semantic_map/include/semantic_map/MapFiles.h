@@ -2,13 +2,11 @@
 #include <map_operations/SmoothedView.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt_compat/Drawing.h>
-#include <octomap/OcTree.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <strict_files/OptionList.h>
 
 #include <filesystem>
 #include <iosfwd>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,16 +85,13 @@ void writePly(std::ostream& out, const semantic_octree::SemanticOcTree& tree,
 void writeCsv(std::ostream& out, const semantic_octree::SemanticOcTree& tree,
               const PointOptions& options = {});
 
-/** Reads the occupancy of a map of OctoMap's: .bt, or .ot with an OcTree or a ColorOcTree. Unlike
- * OctoMap's own functions it checks the whole file first, and prints nothing.
+/** Reads a map of OctoMap's into one of ours: .bt, or .ot with an OcTree or a ColorOcTree. Unlike
+ * OctoMap's own functions it checks the whole file first, and prints nothing. In .ot files that
+ * semantic_octree::writeColorOcTree() wrote, colors are classes again; other files hold occupancy
+ * only (CSemanticOctoMap::occupancyOnly()).
+ * \param like A map whose classes (by their colors) and filter are taken instead; may be null
  * \throw std::runtime_error naming the file and what is wrong: missing, no such map, truncated,
  * damaged. */
-std::unique_ptr<octomap::OcTree> readOctomapFile(const std::filesystem::path& file);
-
-/** Reads a map of OctoMap's into one of ours. In .ot files that semantic_octree::writeColorOcTree()
- * wrote, colors are classes again; other files hold occupancy only
- * (CSemanticOctoMap::occupancyOnly()). \param like A map whose classes (by their colors) and filter
- * are taken instead; may be null. \throw std::runtime_error as readOctomapFile(). */
 semantic_octree::SemanticOcTree importOctomapFile(
     const std::filesystem::path& file, const semantic_octree::SemanticOcTree* like = nullptr);
 
