@@ -122,6 +122,7 @@ TEST(PointFile, whatIsMalformedIsNamed) {
   for (const std::string points : {"-1", "0.5", "1e300"})
     EXPECT_FAILURE("FIELDS x y z\nPOINTS " + points + "\nDATA ascii\n",
                    "points:2: " + points + ", expected a whole number");
+  EXPECT_FAILURE("FIELDS x\nPOINTS 0x4\nDATA ascii\n", "points:2: expected a number, found '0x4'");
   EXPECT_FAILURE("COUNT 1 1 1\n" + text, "points:1: 3 counts for 4 fields");
   for (const char* grid : {"WIDTH 3\nHEIGHT 1", "WIDTH 2\nHEIGHT 0", "WIDTH 0\nHEIGHT 0",
                            "WIDTH 1\nHEIGHT 1099511627776"})

@@ -83,7 +83,7 @@ class PcdEntries {
                                            std::size_t fields, double most) const {
     std::vector<std::size_t> numbers;
     for (const std::string& word : wordsForFields(key, what, fields)) {
-      const double number = strict_files::numberOf(word);
+      const double number = strict_files::numbersOf({word, at(key).where}, 1)[0];
       if (!isWhole(number, most))
         throw std::runtime_error(at(key).where + ": " + word + ", expected a whole number up to " +
                                  strict_files::textOf(most));
