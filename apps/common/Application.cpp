@@ -1,5 +1,6 @@
 #include "Application.h"
 
+#include <malloc.h>
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <unistd.h>
@@ -376,6 +377,7 @@ int runApplication(CLI::App& app, int argc, char** argv, const std::function<int
   app.set_version_flag("--version", MSO_VERSION);
   makeHelpReadable(app);
   openStandardStreams();
+  mallopt(M_ARENA_MAX, 1);  // scans that one thread makes and another frees would leave gaps in two
   const int status = parseAndRun(app, argc, argv, program);
   if (!flushStandardOutput()) {
     std::cerr << app.get_name() << ": the standard output cannot be written" << std::endl;
