@@ -60,4 +60,6 @@ install(DIRECTORY config/ USE_SOURCE_PERMISSIONS DESTINATION ${CMAKE_INSTALL_DAT
 # Documents and samples, laid out as in the sources, so that links between them and commands of the handbook hold.
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
 install(DIRECTORY doc rawlog-samples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
-install(DIRECTORY apps DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation FILES_MATCHING PATTERN README.md)
+foreach(folder apps test/benchmark)
+  install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT documentation FILES_MATCHING PATTERN README.md)
+endforeach()

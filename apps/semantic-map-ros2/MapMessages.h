@@ -42,7 +42,7 @@ class MapMessages {
 };
 
 /** A map's compressed tree for those who keep a copy. `~/change` has what changed, `~/compressed`
- * all of it, for who lost a change. */
+ * all of it, for who comes late or lost a change. */
 class TreeMessages {
  public:
   /** Node and map must outlive it. \param frame of the map */

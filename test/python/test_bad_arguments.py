@@ -168,6 +168,8 @@ def test_more_is_refused_that_is_wrong(grown, tmp_path):
         (lambda: semantic_octree.Map(0.1, []), ValueError, "class"),
         (lambda: semantic_octree.Map(0.1, ["a", 3]), ValueError, "3 is no name"),
         (lambda: semantic_octree.Map(0.1, 3), ValueError, "classes"),
+        (lambda: semantic_octree.Map(0.1, ["a\ud800"]), ValueError, "not Unicode"),
+        (lambda: grown.abstraction({"\ud800": 1}), ValueError, "not Unicode"),
         (lambda: semantic_octree.Map(0.1, {"a": (1, 2, 256)}), ValueError, "color of 'a'"),
         (lambda: semantic_octree.Map(0.1, {"a": "red"}), ValueError, "color of 'a'"),
         (lambda: semantic_octree.Map(0.1, tmp_path / "none.yaml"), RuntimeError, "none.yaml"),

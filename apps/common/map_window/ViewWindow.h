@@ -29,7 +29,7 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   ViewWindow(const std::string& title, int width, int height);
 
   const mrpt_compat::drawing::CSetOfObjects::Ptr& maps() const { return m_maps; }
-  /** What lies upon them. */
+  /** What lies upon the maps. */
   const mrpt_compat::drawing::CSetOfObjects::Ptr& marks() const { return m_marks; }
   /** Panels stand below each other at the left or the right. Where the window is too low for them,
    * those fold that were opened longest ago; before a hand did, the last ones.

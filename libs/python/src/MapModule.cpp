@@ -204,11 +204,14 @@ known in part, and what was known before does not count.)")
 
 PYBIND11_MODULE(_semantic_octree, module) {
   using namespace python;
-  py::register_exception_translator([](std::exception_ptr error) {
+  py::register_local_exception_translator([](std::exception_ptr error) {
     try {
       if (error) std::rethrow_exception(error);
     } catch (const std::out_of_range& e) {  // which pybind11 takes for an index
       PyErr_SetString(PyExc_ValueError, e.what());
+    } catch (const py::cast_error&) {
+      PyErr_SetString(PyExc_ValueError,
+                      "an argument has another type, or text that is not Unicode");
     }
   });
   module.attr("__version__") = MSO_VERSION;

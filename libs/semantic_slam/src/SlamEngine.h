@@ -16,7 +16,7 @@ namespace semantic_slam {
 /** Share of a stretch's points where the place that it is compared with has some, at least. */
 constexpr double kCovered = 0.3;
 /** Points that all searches of a keyframe look up at most while the robot drives: half a second of
- * a desktop's core. At the end each search has all that it needs. */
+ * a desktop's core. At the end each search of a part has ten times as many. */
 constexpr std::size_t kLiveLooks = 300'000'000;
 
 LabeledCloud moved(LabeledCloud cloud, const Eigen::Isometry3d& T);

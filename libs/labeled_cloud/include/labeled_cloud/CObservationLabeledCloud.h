@@ -34,8 +34,8 @@ class CObservationLabeledCloud : public mrpt::obs::CObservation {
   std::vector<std::string> classNames;
 
   /** \throw std::invalid_argument naming what does not fit: numbers of points, classes,
-   * probabilities or times, infinite times, class ids above 254 or (where there are names) without
-   * one, a range without returns that is not above 0. */
+   * probabilities or times, times that are not finite, class ids above 254 or (where there are
+   * names) without one, a range without returns that is not above 0. */
   void validate() const;
 
 #if MSO_MRPT_AT_LEAST(3, 0, 0)

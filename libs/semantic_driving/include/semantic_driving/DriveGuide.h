@@ -38,7 +38,7 @@ class DriveGuide {
              const mrpt::math::TPose2D& goal);
 
   /** After the map and the planner changed: gives the controller another path if there is a reason
-   * to, an empty one if there is none.
+   * to, an empty one if no path is left.
    * \param z height of the ground below the vehicle, meters \param seconds the time */
   void update(const DriveState& state, double z, DriveController& drive, double seconds);
 

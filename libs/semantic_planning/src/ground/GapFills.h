@@ -16,7 +16,7 @@ using ScanGrid = ColumnGrid<ColumnTile>;
 constexpr int kReachOfClasses = 2;
 
 /** Top voxels with enough free space above. A forbidden one takes the class of most drivable ones
- * around, if these outnumber the forbidden: single wrong labels close no road. */
+ * around, if these or that class outnumber the forbidden: single wrong labels close no road. */
 SurfaceTile measuredSurfaces(const ScanGrid& columns, Column tile, const GroundShape& shape);
 
 /** Directions of gap fills; the opposite ones are the same fills from their other ends. */

@@ -19,8 +19,8 @@ using semantic_types::LabeledCloud;
 struct SensorScan {
   LabeledCloud cloud;  ///< sensor frame, meters
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
-  /** Points this far from the sensor, m, stand for beams without a return: they carve, and are no
-   * evidence of where the robot is. */
+  /** Points at least this far from the sensor, m, stand for beams without a return: they carve, and
+   * are no evidence of where the robot is. */
   double emptyFrom = std::numeric_limits<double>::infinity();
   /** When each point was taken, seconds after the time of the scan; empty: all at that time. */
   std::vector<float> times = {};

@@ -101,9 +101,9 @@ class ScratchFile {
  * (StagedFile, OutputFolder). Its own is, once it has its place. */
 void declareNew(const std::filesystem::path& file);
 
-/** Ends the process at once, as _exit() does, after it removed all files and folders that it had
- * begun (StagedFile, OutputFolder). For programs that are told to leave; any thread may call it,
- * but no handler of a signal. */
+/** Ends the process at once, as _exit() does, after it removed all files and folders that it began
+ * (StagedFile, OutputFolder) and that have not taken their place. For programs that are told to
+ * leave; any thread may call it, but no handler of a signal. */
 [[noreturn]] void leaveWithoutOutputs(int status);
 
 /** A lock between processes (flock), held as long as this lives, or as the process does. The file
