@@ -75,10 +75,10 @@ class Robot {
   double driven() const { return m_driven; }
 
   /** As somebody does who walks through it. \return where, map frame */
-  std::vector<Eigen::Vector3d> leaveSomethingInItsPlace() {
+  std::vector<Eigen::Vector3d> leaveSomething(const std::vector<float>& ahead = {-0.1f, 0.3f}) {
     semantic_types::LabeledCloud cloud;
     for (float z = 0.5f; z < 1; z += 0.1f)
-      for (const float x : {-0.1f, 0.3f}) cloud.points.emplace_back(x, 0.f, z);
+      for (const float x : ahead) cloud.points.emplace_back(x, 0.f, z);
     cloud.classes.assign(cloud.points.size(), synthetic_world::kPerson);
     semantic_octree::InsertionOptions noRays;
     noRays.carvingMargin = 1e3;
@@ -197,7 +197,7 @@ TEST(Navigator, DrivesAlikeWhereverItsFrameIsOnTheRobot) {
 TEST(Navigator, IsNotHeldByWhatIsLeftInItsOwnPlace) {
   Robot robot(someOptions());
   for (int i = 0; i < 10; ++i) robot.step();
-  const auto places = robot.leaveSomethingInItsPlace();
+  const auto places = robot.leaveSomething();
   EXPECT_GT(robot.countOccupied(places), 5);
   for (int i = 0; i < 6; ++i) robot.step();  // a scan, whose beams begin above
   EXPECT_EQ(robot.countOccupied(places), 0);
@@ -205,6 +205,17 @@ TEST(Navigator, IsNotHeldByWhatIsLeftInItsOwnPlace) {
   robot.navigator.setGoal(goal);
   EXPECT_EQ(robot.drive(), Status::Arrived) << robot.navigator.reason();
   EXPECT_LT(distance(robot.pose(), goal), 0.3);
+}
+
+TEST(Navigator, KeepsWhatIsAheadOfItsBumper) {
+  NavigatorOptions options = someOptions();
+  options.planner.vehicle.footprint = semantic_planning::Footprint::rectangle(-0.5, 1.5, 1.2);
+  Robot car(options);
+  for (int i = 0; i < 5; ++i) car.step();
+  const auto ahead = car.leaveSomething({1.7f}), within = car.leaveSomething();
+  car.step();  // a scan
+  EXPECT_EQ(car.countOccupied(within), 0);
+  EXPECT_EQ(car.countOccupied(ahead), 5);
 }
 
 TEST(Navigator, HasAScanInTheMapWhenItsLatencyIsOver) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <future>
 #include <random>
 
@@ -245,3 +246,37 @@ class CollisionCheckerOnSlopeTest : public CollisionCheckerTest {
 };
 
 TEST_F(CollisionCheckerOnSlopeTest, ofASearchAnswersAlike) { expectAlikeOfSearch(); }
+
+TEST(CollisionCheckerOfVehicles, keepsTheFootprintItselfClearOfPillars) {
+  const std::filesystem::path config = std::filesystem::path(MSO_SOURCE_DIR) / "config";
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> at(-7, 7), heading(-M_PI, M_PI);
+  for (const auto& file : std::filesystem::directory_iterator(config / "vehicles"))
+    for (const double voxel : {0.1, 0.2}) {
+      SCOPED_TRACE(file.path().string() + ' ' + std::to_string(voxel));
+      PaintedWorld world(voxel);
+      world.floor(-8, 8, -8, 8, PaintedWorld::Road);
+      std::vector<TPose2D> pillars;  // their borders
+      for (int i = 0; i < 12; ++i) {
+        const double x = 0.2 * std::floor(5 * at(random)), y = 0.2 * std::floor(5 * at(random));
+        world.box(x, x + 0.2, y, y + 0.2, 0, 2, PaintedWorld::Wall);
+        for (int k = 0; k <= 2; ++k)
+          for (int l = 0; l <= 2; ++l) pillars.emplace_back(x + 0.1 * k, y + 0.1 * l, 0);
+      }
+      const VehicleOptions vehicle = loadVehicle(file);
+      const colored_graph::ClassOrder order(5, {{1}});
+      const Ground ground(world.map(), vehicle, {}, order);
+      const CollisionChecker checker(ground, vehicle, order);
+      double nearest = 1;
+      for (int i = 0; i < 10000; ++i) {
+        const auto a = checker.place({at(random), at(random), heading(random)});
+        if (!a || checker.fit(*a) != Fit::Free) continue;
+        for (const TPose2D& pillar : pillars) {
+          const TPose2D p = pillar - a->pose;
+          nearest = std::min(nearest, vehicle.footprint.distance({p.x, p.y}));
+        }
+      }
+      EXPECT_GE(nearest, vehicle.clearance);
+      EXPECT_LT(nearest, vehicle.clearance + 2 * voxel);  // it gets that near
+    }
+}

@@ -142,7 +142,7 @@ TEST(Footprint, inscribedRadiusIsTheNearestOutlinesDistanceFromAnOriginWithin) {
 TEST(Footprint, discsCoverEveryPointOfIt) {
   EXPECT_TRUE(rc::check([] {
     const Footprint outline = anyConvex();
-    const auto discs = outline.coveringDiscs(number(0, 2));
+    const auto discs = outline.coveringDiscs(number(0, 200));
     for (int k = 0; k < 100; ++k) {
       double sum = 0;
       Eigen::Vector2d p = Eigen::Vector2d::Zero();

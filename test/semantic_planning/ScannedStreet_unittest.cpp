@@ -148,4 +148,5 @@ TEST(ScannedStreet, forbiddenClassesThatDifferDoNotAddUp) {
   };
   EXPECT_EQ(classOfMiddle(PaintedWorld::Grass, PaintedWorld::Wall), PaintedWorld::Road);
   EXPECT_EQ(classOfMiddle(PaintedWorld::Mud, PaintedWorld::Mud), PaintedWorld::Mud);
+  EXPECT_EQ(classOfMiddle(PaintedWorld::Mud, PaintedWorld::Wall), PaintedWorld::Mud);
 }

@@ -119,15 +119,14 @@ class ImageHeader {
   }
   /** By the first bytes. None, too: what OpenCV may take for something else. */
   Kind kind() const { return m_kind; }
-  /** Pixels take three bytes at most in JPEG; in PNG 1, 3, 1, 2, or 4, or twice as many.
-   * \throw std::runtime_error unpacked, they take more than kMost and kPerByte times the file. */
+  /** A byte of a mask of one class stands for up to 900 pixels: panoramas are allowed in any case.
+   * JPEG takes up to nine bytes a pixel.
+   * \throw std::runtime_error it has more pixels than that and kPerByte for each byte. */
   void checkSize() const {
-    constexpr std::uint64_t kMost = 64 << 20, kPerByte = 64;
-    const bool isPng = m_kind == Kind::Png;
-    const std::uint64_t channels = isPng ? "\1\1\3\1\2\1\4\1"[number(25, 1) & 7] : 3;
-    const std::uint64_t bytes = isPng && number(24, 1) == 16 ? 2 * channels : channels;
+    constexpr std::uint64_t kPerByte = 16;
+    const std::uint64_t most = (m_kind == Kind::Png ? 16384 : 8192) * 8192;
     const auto [columns, rows] = size();
-    if (columns > 0 && rows > (kMost + kPerByte * m_fileSize) / bytes / columns)
+    if (columns > 0 && rows > (most + kPerByte * m_fileSize) / columns)
       throw std::runtime_error("says that it has " + std::to_string(columns) + " x " +
                                std::to_string(rows) + " pixels, more than a file of " +
                                std::to_string(m_fileSize) + " bytes may have");

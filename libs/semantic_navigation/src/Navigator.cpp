@@ -260,7 +260,8 @@ void Navigator::carve(const Mapper::Place& at, const std::vector<Eigen::Vector2d
     column(at.T_map_robot.inverse() * Eigen::Vector3d(p.x(), p.y(), T_map_ground.translation().z()),
            kBody);
   if (!isAnythingWithin(m_mapper.map(), vehicle, T_map_ground)) return;
-  for (const semantic_planning::Disc& d : vehicle.footprint.coveringDiscs())
+  for (const semantic_planning::Disc& d :
+       vehicle.footprint.coveringDiscs(m_mapper.map().getResolution()))
     column({d.x, d.y, -m_fillsHeight.meters().value_or(0)}, d.radius);
 }
 

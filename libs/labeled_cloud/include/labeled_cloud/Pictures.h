@@ -23,8 +23,8 @@ enum class ImageKinds {
 /** The pixels of an image file as they are stored, its kind told by its first bytes. (OpenCV tries
  * its decoders in turn: it takes some files of one kind for another, and ends the process over
  * damaged ones.) Colors are BGR(A).
- * \throw std::runtime_error naming the file: there is none, it is no image, it is damaged, or its
- * pixels take more than 64 MB and 64 times the file. */
+ * \throw std::runtime_error naming the file: there is none, it is no image, it is damaged, or it
+ * has more pixels than 16384 x 8192 (JPEG: 8192 x 8192) and 16 for each byte. */
 cv::Mat readImageFile(const std::filesystem::path& file, ImageKinds kinds);
 
 /** What readImageFile() looks at before it reads the pixels, for those who have others read them.

@@ -122,8 +122,9 @@ struct Votes {
 };
 
 /** The class of a surface that is of a forbidden one: its own, unless most of what is around it is
- * of others, or one of these is more frequent than each that is forbidden: wrong labels differ.
- * Where few columns next to it have any, those beyond count, too. */
+ * of others. Or nothing around shares its own, and one of these is more frequent than each that is
+ * forbidden: wrong labels differ, but real edges, ditches and verges go on. Where few columns next
+ * to it have any, those beyond count, too. */
 ClassId classAmong(const TileWindow<ColumnTile>& columns, Column c, const Surface& s,
                    const GroundShape& shape) {
   constexpr int kFew = 5;  // most of nine
@@ -133,7 +134,9 @@ ClassId classAmong(const TileWindow<ColumnTile>& columns, Column c, const Surfac
     const auto end = votes.classes.begin() + votes.num;
     const auto numAllowed = std::count_if(votes.classes.begin(), end, isAllowed);
     const auto best = votes.mostFrequent(shape, true), worst = votes.mostFrequent(shape, false);
-    if (best && (2 * numAllowed > votes.num || votes.of(*best) > votes.of(*worst))) return *best;
+    const bool isMost = 2 * numAllowed > votes.num;
+    if (best && (isMost || (votes.of(s.classId) <= 1 && votes.of(*best) > votes.of(*worst))))
+      return *best;
     if (votes.num >= kFew) break;
   }
   return s.classId;

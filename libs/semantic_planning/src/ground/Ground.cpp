@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -18,10 +19,12 @@ int voxels(double meters, double voxelSize) {
   return static_cast<int>(std::ceil(meters / voxelSize - 1e-6));
 }
 
-double largestRadius(const VehicleOptions& vehicle) {
+/** Of discs with pairs, which planners check, and of those without. */
+double largestRadius(const VehicleOptions& vehicle, double voxelSize) {
   double largest = 0;
-  for (const Disc& disc : vehicle.footprint.coveringDiscs())
-    largest = std::max(largest, disc.radius);
+  for (const double most : {voxelSize, std::numeric_limits<double>::infinity()})
+    for (const Disc& disc : vehicle.footprint.coveringDiscs(most))
+      largest = std::max(largest, disc.radius);
   return largest;
 }
 
@@ -86,7 +89,8 @@ GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& opt
       widestGap(std::max(options.fillGap, options.unknownGap) / voxelSize + 1e-6),
       rise(std::tan(vehicle.maxSlope * M_PI / 180)),
       baseline(std::max(2, static_cast<int>(std::lround(0.6 / voxelSize)))),
-      largestClearance(voxels(largestRadius(vehicle) + vehicle.clearance, voxelSize) + 1),
+      largestClearance(voxels(largestRadius(vehicle, voxelSize) + vehicle.clearance, voxelSize) +
+                       1),
       ranks(order.classes()),
       keepOff(order.classes()) {
   for (int id = 0; id < order.classes(); ++id) {
