@@ -9,6 +9,7 @@
 #include <strict_files/Memory.h>
 #include <strict_files/Words.h>
 #include <zlib.h>
+#include <opencv2/core/mat.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -48,11 +49,41 @@ bool hasFlags(const mrpt::obs::CObservation& observation) {
   return !o || isFlag(o->rightToLeft);
 }
 
+using strict_files::AllocationLimit;
+
+/** OpenCV's allocator, but a thread with a limit gets no larger image than one of 16384 x 8192
+ * colors: a JPEG of a few bytes says of itself what it likes. */
+class LimitedImages : public cv::MatAllocator {
+  cv::UMatData* allocate(int dimensions, const int* sizes, int type, void* data, std::size_t* steps,
+                         cv::AccessFlag access, cv::UMatUsageFlags usage) const override {
+    constexpr double kMost = 3.0 * 16384 * 8192;
+    double bytes = CV_ELEM_SIZE(type);
+    for (int i = 0; i < dimensions; ++i) bytes *= sizes[i];
+    if (bytes > kMost && !AllocationLimit::isAllowed(AllocationLimit::kMost + 1))
+      throw strict_files::PieceTooLarge();
+    return usual().allocate(dimensions, sizes, type, data, steps, access, usage);
+  }
+  bool allocate(cv::UMatData* data, cv::AccessFlag access,
+                cv::UMatUsageFlags usage) const override {
+    return usual().allocate(data, access, usage);
+  }
+  void deallocate(cv::UMatData* data) const override { usual().deallocate(data); }
+
+  static cv::MatAllocator& usual() { return *cv::Mat::getStdAllocator(); }
+};
+
+/** For this process: images outlive readers. */
+void limitImages() {
+  [[maybe_unused]] static const bool isDone =
+      (cv::Mat::setDefaultAllocator(new LimitedImages), true);
+}
+
 }  // namespace
 
 RawlogReader::RawlogReader(const std::filesystem::path& file)
     : m_file(file), m_stream(std::make_unique<CompressedInputStream>(file)) {
   registerObservations();
+  limitImages();
 }
 
 RawlogReader::~RawlogReader() = default;
@@ -71,7 +102,7 @@ CSerializable::Ptr RawlogReader::readObject() {
   RawlogObjects archive(*m_stream);
   std::string problem;
   try {
-    const strict_files::AllocationLimit limit(m_stream->allows());
+    const AllocationLimit limit(m_stream->allows());
     if (auto object = archive.next()) return object;
   } catch (const std::exception& e) {
     problem = strict_files::messageOf(e);
