@@ -41,6 +41,7 @@ mso_external_mrpt(opengl)
 mso_external_mrpt(graphs)
 mso_external_mrpt(nav)
 if(MSO_BUILD_APPS)
+  find_package(JPEG REQUIRED)
   find_package(${mso_mrpt}gui QUIET)  # windows
 endif()
 

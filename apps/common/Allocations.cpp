@@ -4,11 +4,20 @@
 // here, rawlog2semantic-map ends by a segmentation fault over depth_image_beyond_memory (274
 // bytes). Over velodyne_calibration_beyond_memory (217 bytes) it takes 17 GB and more than a
 // minute. With it both are refused within a second.
+//
+// Likewise libjpeg's handler of errors, with which MRPT reads images of rawlogs: it ends the
+// program, as image_of_a_bad_table there shows (5.8 kB).
+#include <dlfcn.h>
 #include <strict_files/Memory.h>
 
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <stdexcept>
+#include <string>
+
+#include <jpeglib.h>
 
 using strict_files::AllocationLimit;
 using strict_files::PieceTooLarge;
@@ -67,4 +76,18 @@ NOT_INLINE void operator delete[](void* memory, std::size_t) noexcept { std::fre
 NOT_INLINE void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 NOT_INLINE void operator delete[](void* memory, const std::nothrow_t&) noexcept {
   std::free(memory);
+}
+
+/** Replaces libjpeg's, whose errors end the process. OpenCV's errors are its own.
+ * \throw std::runtime_error not here: where there is an error in an image */
+jpeg_error_mgr* jpeg_std_error(jpeg_error_mgr* errors) {
+  static const auto usual =
+      reinterpret_cast<decltype(&jpeg_std_error)>(dlsym(RTLD_NEXT, "jpeg_std_error"));
+  usual(errors)->error_exit = [](j_common_ptr image) {
+    char what[JMSG_LENGTH_MAX];
+    image->err->format_message(image, what);
+    if (image->mem) image->mem->self_destruct(image);
+    throw std::runtime_error(std::string("a JPEG: ") + what);
+  };
+  return errors;
 }

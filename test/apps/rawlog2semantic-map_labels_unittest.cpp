@@ -283,9 +283,9 @@ TEST_F(Rawlog2SemanticMap, aHostileRawlogIsRefusedInLittleMemory) {
   for (const char* name :
        {"actions_of_poses", "actions_of_too_many", "clouds_in_clouds", "frame_in_a_frame",
         "frame_of_nothing", "frame_of_poses", "frame_of_too_many", "frame_with_a_longer_name",
-        "image_beyond_memory", "movement_of_too_many_particles", "movement_without_estimate",
-        "old_frame_in_a_frame", "old_frame_of_nothing", "text_of_too_many_letters",
-        "velodyne_calibration_beyond_memory"}) {
+        "image_beyond_memory", "image_of_a_bad_table", "movement_of_too_many_particles",
+        "movement_without_estimate", "old_frame_in_a_frame", "old_frame_of_nothing",
+        "text_of_too_many_letters", "velodyne_calibration_beyond_memory"}) {
     const std::string rawlog = std::string(name) + ".rawlog";
     fs::copy_file(fs::path(MSO_SOURCE_DIR) / "test/fuzz/corpus/rawlog" / name, folder / rawlog);
     const ProgramRun refused = run(rawlog);
