@@ -29,7 +29,8 @@ struct RawlogEntry {
 };
 
 /** Reads a rawlog of either kind (action/sensory-frame pairs or plain observations), compressed or
- * not, object by object: memory does not grow with the rawlog. */
+ * not, object by object: memory does not grow with the rawlog. The first one replaces OpenCV's
+ * default allocator: while an object is read, no image may be larger than 400 MB. */
 class RawlogReader {
  public:
   /** \throw std::runtime_error naming the file, if it cannot be opened. */
