@@ -42,41 +42,18 @@ void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
 
 }  // namespace mrpt
 
-namespace {
-
-void* allocate(std::size_t size) noexcept {
-  return AllocationLimit::isAllowed(size) ? std::malloc(size ? size : 1) : nullptr;
-}
-
-void* allocateOrThrow(std::size_t size) {
+// The standard library's other forms call these, but for large alignments. A sanitizer has its own
+// for what is left out. Not inline: or the compiler pairs malloc() here with delete there, and
+// warns.
+#define NOT_INLINE __attribute__((noinline))
+NOT_INLINE void* operator new(std::size_t size) {
   if (!AllocationLimit::isAllowed(size)) throw PieceTooLarge();
   void* const memory = std::malloc(size ? size : 1);
   if (!memory) throw std::bad_alloc();
   return memory;
 }
-
-}  // namespace
-
-// As the standard library's, but for the limit. All forms but those for large alignments. A
-// sanitizer has its own for what is left out, and misses memory that one got and another frees. Not
-// inline: or the compiler pairs malloc() here with delete there, and warns.
-#define NOT_INLINE __attribute__((noinline))
-NOT_INLINE void* operator new(std::size_t size) { return allocateOrThrow(size); }
-NOT_INLINE void* operator new[](std::size_t size) { return allocateOrThrow(size); }
-NOT_INLINE void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
-}
-NOT_INLINE void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
-}
 NOT_INLINE void operator delete(void* memory) noexcept { std::free(memory); }
-NOT_INLINE void operator delete[](void* memory) noexcept { std::free(memory); }
 NOT_INLINE void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-NOT_INLINE void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-NOT_INLINE void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-NOT_INLINE void operator delete[](void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
-}
 
 /** Replaces libjpeg's, whose errors end the process. OpenCV's errors are its own.
  * \throw std::runtime_error not here: where there is an error in an image */

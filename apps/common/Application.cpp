@@ -81,7 +81,6 @@ void Outputs::check(const std::vector<fs::path>& files, const std::vector<fs::pa
   for (const fs::path& file : files) {
     if (!file.empty() && !seen.insert(file.lexically_normal()).second)
       throw std::runtime_error(file.string() + ": would be written twice");
-    if (!m_overwrite && !file.empty()) strict_files::declareNew(file);
     if (!fs::exists(fs::symlink_status(file, error))) continue;
     for (const fs::path& input : inputs)
       if (fs::equivalent(file, input, error))
@@ -106,36 +105,25 @@ std::string withDashes(std::string name) {
   return name;
 }
 
-const std::string kOneOf = "one of ";
-
-bool isChoice(const strict_files::Option& option) { return option.expected.rfind(kOneOf, 0) == 0; }
-
-/** "0 to 2", as addNumber() has it; empty without limits on both sides. */
-std::string rangeOf(const strict_files::Option& option) {
-  static const std::regex bounded("a (whole )?number from (.*)");
-  std::smatch parts;
-  return std::regex_match(option.expected, parts, bounded) ? parts[2].str() : "";
-}
-
 std::string capitalized(std::string text) {
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
 }
 
-std::string helpOf(const strict_files::Option& option) {
-  std::string help = capitalized(option.help);
-  if (!option.unit.empty()) help += ", " + option.unit;
-  if (isChoice(option) || !rangeOf(option).empty() || option.expected == "a number") return help;
-  return help + " (" + option.expected + ")";
+/** "{compressed,halton}", as addWords() has it; "0 to 2", as addNumber() has it; or "NUMBER". */
+std::string typeOf(const strict_files::Option& option) {
+  static const std::regex bounded("a (whole )?number from (.*)"), choice("one of (.*)");
+  std::smatch parts;
+  if (std::regex_match(option.expected, parts, bounded)) return parts[2];
+  if (!std::regex_match(option.expected, parts, choice)) return "NUMBER";
+  return "{" + std::regex_replace(parts[1].str(), std::regex(" "), "") + "}";
 }
 
-/** "{compressed,halton}", as addWords() has it. */
-std::string typeOf(const strict_files::Option& option) {
-  if (!isChoice(option)) return rangeOf(option).empty() ? "NUMBER" : rangeOf(option);
-  std::string words;
-  for (const char c : option.expected.substr(kOneOf.size()))
-    if (c != ' ') words += c;
-  return "{" + words + "}";
+std::string helpOf(const strict_files::Option& option) {
+  const std::string help =
+      capitalized(option.help) + (option.unit.empty() ? "" : ", ") + option.unit;
+  const bool isSaid = typeOf(option) != "NUMBER" || option.expected == "a number";
+  return isSaid ? help : help + " (" + option.expected + ")";
 }
 
 void addSwitch(CLI::App& app, const strict_files::Option& option, const std::string& group) {
@@ -224,11 +212,7 @@ std::string unexpected(const CLI::App& app) {
     const std::string name = word.substr(0, word.find('='));
     if (std::find(known.begin(), known.end(), name) != known.end())
       return name + " belongs behind the command";
-    const bool meansOrder =
-        name == "--classes" && std::find(known.begin(), known.end(), "--order") != known.end();
-    return "unknown option '" + name + "'" +
-           (meansOrder ? "; an order of classes is --order"
-                       : strict_files::didYouMean(name, known));
+    return "unknown option '" + name + "'" + strict_files::didYouMean(name, known);
   }
   if (words.empty()) return "";
   if (!commands.empty() && app.get_subcommands().empty())
@@ -315,30 +299,6 @@ void makeHelpReadable(CLI::App& app) {
 namespace {
 
 constexpr int kUsage = 64;  // EX_USAGE of sysexits.h
-
-[[noreturn]] void leaveSaying(const char* what) {
-  const char* const line[] = {program_invocation_short_name, ": ", what, "\n"};
-  for (const char* part : line) (void)!write(STDERR_FILENO, part, std::strlen(part));
-  _exit(1);
-}
-
-/** Where nobody can catch it (in libraries before main(), in threads), a limit of memory ends the
- * program with a message, too. */
-[[noreturn]] void leaveUncaught() {
-  if (!std::current_exception()) std::abort();
-  try {
-    throw;
-  } catch (const std::bad_alloc&) {
-    leaveSaying("more memory is needed than there is");
-  } catch (const std::exception& e) {
-    leaveSaying(e.what());
-  }
-}
-
-void setLeaving() { std::set_terminate(leaveUncaught); }
-
-/** Before all libraries' own beginnings. */
-[[gnu::section(".preinit_array"), gnu::used]] void (*const atFirst)() = setLeaving;
 
 /** Begin and end of a message that quotes a file, whose words may be as long as the file. */
 std::string shortened(std::string text) {

@@ -51,7 +51,7 @@ Eigen::Vector3d pointOf(const std::string& text, const std::string& expected) {
     if (!std::getline(parts, part, ',')) refuse("'" + text + "'", expected);
     point[i] = numberOf(trimmed(part), expected);
   }
-  if (std::getline(parts, part)) refuse("'" + text + "'", expected);
+  if (std::getline(parts, part) || !point.allFinite()) refuse("'" + text + "'", expected);
   return point;
 }
 
@@ -95,92 +95,60 @@ void OptionList::remove(const std::string& name) {
 }
 
 void OptionList::addNumber(const char* name, const char* unit, const char* help, const Range& range,
-                           bool whole, std::function<double()> get,
-                           std::function<void(double)> set) {
-  const std::string expected = inWords(range, whole);
-  const auto check = [range, whole, expected](double number, const std::string& found) {
-    if (!contains(range, number) || (whole && number != std::floor(number)))
-      refuse(found, expected);
+                           Number kind, const std::function<std::optional<double>()>& get,
+                           const std::function<void(std::optional<double>)>& set) {
+  const bool whole = kind == Number::Whole, mayBeNone = kind == Number::OrNone;
+  const std::string expected = inWords(range, whole) + (mayBeNone ? ", or none" : "");
+  const auto textOfIt = [get] {
+    const auto number = get();
+    return number ? textOf(*number) : std::string("none");
   };
-  Option option{name, unit, help, expected};
-  option.text = [get] { return textOf(get()); };
-  option.set = [set, check, expected](const std::string& text) {
+  const auto setIt = [=](const std::string& text) {
+    if (mayBeNone && sameWord(text, "none")) return set(std::nullopt);
     const double number = numberOf(text, expected);
-    check(number, text);
+    if (!contains(range, number) || (whole && number != std::floor(number))) refuse(text, expected);
     set(number);
   };
-  option.check = [get, check] { check(get(), textOf(get())); };
-  m_options.push_back(option);
-}
-
-void OptionList::addOptional(const char* name, std::optional<double>& value, const char* unit,
-                             const Range& range, const char* help) {
-  Option option{name, unit, help, inWords(range, false) + ", or none"};
-  const auto check = [range, expected = option.expected](double number) {
-    if (!contains(range, number)) refuse(textOf(number), expected);
-  };
-  option.text = [&value] { return value ? textOf(*value) : std::string("none"); };
-  option.set = [&value, check, expected = option.expected](const std::string& text) {
-    if (sameWord(text, "none")) {
-      value.reset();
-      return;
-    }
-    const double number = numberOf(text, expected);
-    check(number);
-    value = number;
-  };
-  option.check = [&value, check] {
-    if (value) check(*value);
-  };
-  m_options.push_back(option);
+  m_options.push_back({name, unit, help, expected, false, textOfIt, setIt});
 }
 
 void OptionList::addWord(const char* name, const char* help, const std::vector<std::string>& words,
-                         std::function<std::string()> get, std::function<void(std::size_t)> set) {
-  Option option{name, "", help, "one of " + joined(words)};
-  option.text = get;
-  option.set = [set, words, expected = option.expected](const std::string& text) {
+                         const std::function<std::string()>& get,
+                         const std::function<void(std::size_t)>& set) {
+  const std::string expected = "one of " + joined(words);
+  const auto setIt = [=](const std::string& text) {
     for (std::size_t i = 0; i < words.size(); ++i)
       if (sameWord(words[i], text)) return set(i);
     refuse("'" + text + "'", expected + didYouMean(text, words));
   };
-  option.check = [get] { get(); };
-  m_options.push_back(option);
+  m_options.push_back({name, "", help, expected, false, get, setIt});
 }
 
 void OptionList::addOther(const char* name, bool& value, const char* unit, const char* help) {
-  Option option{name, unit, help, "true or false"};
-  option.isSwitch = true;
-  option.text = [&value] { return value ? "true" : "false"; };
-  option.set = [&value, expected = option.expected](const std::string& text) {
+  const std::string expected = "true or false";
+  const auto set = [&value, expected](const std::string& text) {
     value = switchOf(text, expected);
   };
-  option.check = [] {};
-  m_options.push_back(option);
+  m_options.push_back(
+      {name, unit, help, expected, true, [&value] { return value ? "true" : "false"; }, set});
 }
 
 void OptionList::addOther(const char* name, std::string& value, const char* unit,
                           const char* help) {
-  Option option{name, unit, help, "text"};
-  option.text = [&value] { return value; };
-  option.set = [&value](const std::string& text) { value = text; };
-  option.check = [] {};
-  m_options.push_back(option);
+  m_options.push_back({name, unit, help, "text", false, [&value] { return value; },
+                       [&value](const std::string& text) { value = text; }});
 }
 
 void OptionList::addOther(const char* name, Eigen::Vector3d& value, const char* unit,
                           const char* help) {
-  Option option{name, unit, help, "three numbers x, y, z"};
-  option.text = [&value] {
+  const std::string expected = "three numbers x, y, z";
+  const auto text = [&value] {
     return textOf(value.x()) + ", " + textOf(value.y()) + ", " + textOf(value.z());
   };
-  option.set = [&value, expected = option.expected](const std::string& text) {
-    value = pointOf(text, expected);
+  const auto set = [&value, expected](const std::string& words) {
+    value = pointOf(words, expected);
   };
-  option.check = [&value, expected = option.expected, text = option.text] {
-    if (!value.allFinite()) refuse(text(), expected);
-  };
-  m_options.push_back(option);
+  m_options.push_back({name, unit, help, expected, false, text, set});
 }
 
 void require(bool holds, const std::string& option, double value, const std::string& expected) {
@@ -191,7 +159,7 @@ void require(bool holds, const std::string& option, double value, const std::str
 void checkAll(const OptionList& list, const std::string& owner) {
   for (const Option& option : list.options()) {
     try {
-      option.check();
+      option.set(option.text());
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(owner + "::" + option.name + " " + e.what());
     }

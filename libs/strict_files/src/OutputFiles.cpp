@@ -17,27 +17,31 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/** \throw std::runtime_error something else than a file is there. */
+void checkPlace(const fs::path& place) {
+  std::error_code error;
+  const fs::file_status status = fs::status(place, error);
+  if (fs::is_directory(status)) throw std::runtime_error("it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw std::runtime_error("it is no regular file");
+}
+
 /** What links lead to. \throw std::runtime_error nothing can be written there. */
-fs::path placeOf(const fs::path& target) {
-  const auto refuse = [&target](const std::string& why) {
-    throw std::runtime_error(target.string() + ": cannot be written, " + why);
-  };
+fs::path placeOf(const fs::path& target) try {
   std::error_code error;
   const bool isLink = fs::is_symlink(target, error);
   const fs::path place = isLink ? fs::canonical(target, error) : target;
-  if (isLink && error) refuse("it is a link that leads nowhere");
-  const fs::file_status status = fs::status(place, error);
-  if (fs::is_directory(status)) refuse("it is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) refuse("it is no regular file");
+  if (isLink && error) throw std::runtime_error("it is a link that leads nowhere");
+  checkPlace(place);
   return place;
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(target.string() + ": cannot be written, " + e.what());
 }
 
-/** What f() gives. \throw std::runtime_error naming the target, but for PlaceTaken */
+/** What f() gives. \throw std::runtime_error naming the target */
 template <typename F>
 auto naming(const fs::path& target, const F& f) try {
   return f();
-} catch (const PlaceTaken&) {
-  throw;
 } catch (const fs::filesystem_error& e) {
   throw std::runtime_error(target.string() + ": cannot be written: " + e.code().message());
 } catch (const std::exception& e) {
@@ -68,31 +72,15 @@ StagedFile::~StagedFile() = default;
 
 const fs::path& StagedFile::path() const { return m_unfinished->path(); }
 
-void StagedFile::commit(Disk when) try {
+void StagedFile::commit(Disk when) {
   naming(m_target, [&] {
-    const Placement placement(m_unfinished->path(), m_target);
-    const OpenFolder folder(m_target.parent_path());
+    const Descriptor folder = openToSync(m_target.parent_path());  // what can fail comes first
     if (when == Disk::Now) synchronize(m_unfinished->descriptor());
     const auto held = Unfinished::hold();
-    placement.take();
-    if (when == Disk::Now) folder.synchronize();
+    fs::rename(path(), m_target);
+    if (when == Disk::Now) synchronize(folder);
   });
-} catch (const PlaceTaken& e) {
-  const auto held = Unfinished::hold();
-  keepAndReport(m_target, *m_unfinished, e);
 }
-
-namespace {
-
-/** \throw std::runtime_error something else than a file is there. */
-void checkPlace(const fs::path& place) {
-  std::error_code error;
-  const fs::file_status status = fs::status(place, error);
-  if (fs::exists(status) && !fs::is_regular_file(status))
-    throw std::runtime_error(fs::is_directory(status) ? "it is a folder" : "it is no regular file");
-}
-
-}  // namespace
 
 OutputFolder::OutputFolder(fs::path folder) : m_folder(std::move(folder)) {
   try {
@@ -109,30 +97,23 @@ fs::path OutputFolder::staged(const std::string& name) const { return m_staging-
 
 void OutputFolder::takeAlong(const std::string& lock) { m_staging->takeAlong(lock); }
 
-/** Where each file goes, when all are on the disk. \throw filesystem_error or runtime_error */
-Placement OutputFolder::prepare(const std::string& name) const {
-  checkPlace(m_folder / name);
-  if (!fs::exists(staged(name))) return {{}, m_folder / name};
-  synchronize(staged(name));
-  return {staged(name), m_folder / name};
-}
-
 void OutputFolder::commit(const std::vector<std::string>& names) {
-  const auto each = [&](auto action) {
-    for (std::size_t i = 0; i < names.size(); ++i) try {
-        naming(m_folder / names[i], [&] { action(i); });
-      } catch (const PlaceTaken& e) {
-        keepAndReport(m_folder / names[i], *m_staging, e);
-      }
-  };
-  std::vector<Placement> placements;  // what can fail comes first
-  each([&](std::size_t i) { placements.push_back(prepare(names[i])); });
-  const OpenFolder folder = naming(m_folder, [&] { return OpenFolder(m_folder); });
-  flock(folder.descriptor(), LOCK_EX);  // of two at the same time, the files are of one
+  std::vector<std::pair<fs::path, fs::path>> moves;  // what can fail comes first
+  for (const std::string& name : names) {
+    const auto& [from, to] = moves.emplace_back(staged(name), m_folder / name);
+    naming(to, [&from = from, &to = to] {
+      checkPlace(to);
+      if (fs::exists(from)) synchronize(openToSync(from));
+    });
+  }
+  const Descriptor folder = naming(m_folder, [&] { return openToSync(m_folder); });
+  flock(folder, LOCK_EX);  // of two at the same time, the files are of one
   const auto held = Unfinished::hold();
-  each([&](std::size_t i) { placements[i].checkFree(); });
-  each([&](std::size_t i) { placements[i].take(); });
-  naming(m_folder, [&] { folder.synchronize(); });
+  for (const auto& [from, to] : moves)
+    naming(to, [&from = from, &to = to] {
+      fs::exists(from) ? fs::rename(from, to) : void(fs::remove(to));
+    });
+  naming(m_folder, [&] { synchronize(folder); });
 }
 
 namespace {
@@ -194,6 +175,10 @@ void ScratchFile::discard(std::uint64_t place, std::size_t size) noexcept {
 #endif
 }
 
+Descriptor::~Descriptor() {
+  if (m_number >= 0) close(m_number);
+}
+
 namespace {
 
 int operationOf(FileLock::Kind kind) { return kind == FileLock::Kind::Shared ? LOCK_SH : LOCK_EX; }
@@ -203,7 +188,7 @@ int operationOf(FileLock::Kind kind) { return kind == FileLock::Kind::Shared ? L
 FileLock::FileLock(const std::filesystem::path& file)
     : m_descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   if (m_descriptor < 0 && (errno == EACCES || errno == EROFS))
-    m_descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    m_descriptor = Descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
 }
 
 FileLock::FileLock(const std::filesystem::path& file, Kind kind) : FileLock(file) {
@@ -221,17 +206,6 @@ std::optional<FileLock> FileLock::tryTo(const std::filesystem::path& file, Kind 
       return errno == EWOULDBLOCK ? std::nullopt : std::optional(std::move(lock));
     if (leadsTo(file, lock.m_descriptor) || i == kMost) return lock;
   }
-}
-
-FileLock::~FileLock() {
-  if (m_descriptor >= 0) close(m_descriptor);
-}
-
-FileLock::FileLock(FileLock&& o) noexcept : m_descriptor(std::exchange(o.m_descriptor, -1)) {}
-
-FileLock& FileLock::operator=(FileLock o) noexcept {
-  std::swap(m_descriptor, o.m_descriptor);
-  return *this;
 }
 
 }  // namespace strict_files

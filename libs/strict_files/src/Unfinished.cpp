@@ -57,11 +57,9 @@ bool isName(const std::string& name) {
 
 /** Removes it unless somebody holds its lock. Where there are no locks, it stays. */
 void removeIfDead(const fs::path& path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) return;
+  const Descriptor there(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK));
   std::error_code ignored;
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(path, ignored);
-  close(descriptor);
+  if (there >= 0 && flock(there, LOCK_EX | LOCK_NB) == 0) fs::remove_all(path, ignored);
 }
 
 void removeDead(const fs::path& folder) {
@@ -97,16 +95,8 @@ Unfinished::Unfinished(const fs::path& folder, Kind kind, const std::string& end
 Unfinished::~Unfinished() {
   const auto held = hold();
   registry().all.erase(this);
-  close(m_descriptor);  // first: to remove a folder takes a descriptor, and this may be the last
+  m_descriptor = Descriptor(-1);  // first: to remove a folder takes one, and this may be the last
   discard();
-}
-
-fs::path Unfinished::keep() {
-  const std::string name = "kept-" + m_path.filename().string().substr(kPrefix.size());
-  const fs::path kept = m_path.parent_path() / name;
-  fs::rename(m_path, kept);
-  m_path.clear();
-  return kept;
 }
 
 std::unique_lock<std::mutex> Unfinished::hold() { return std::unique_lock(registry().mutex); }
@@ -115,9 +105,9 @@ std::unique_lock<std::mutex> Unfinished::hold() { return std::unique_lock(regist
 bool Unfinished::make(Kind kind) {
   constexpr int kSafely = O_NOFOLLOW | O_CLOEXEC;
   if (kind == Kind::File)
-    m_descriptor = open(m_path.c_str(), O_RDWR | O_CREAT | O_EXCL | kSafely, 0666);
+    m_descriptor = Descriptor(open(m_path.c_str(), O_RDWR | O_CREAT | O_EXCL | kSafely, 0666));
   else if (mkdir(m_path.c_str(), 0777) == 0) {
-    m_descriptor = open(m_path.c_str(), O_RDONLY | O_DIRECTORY | kSafely);
+    m_descriptor = Descriptor(open(m_path.c_str(), O_RDONLY | O_DIRECTORY | kSafely));
     if (m_descriptor < 0 && errno == ENOENT) return false;
   }
   if (m_descriptor >= 0) return true;
@@ -128,10 +118,7 @@ bool Unfinished::make(Kind kind) {
 /** False if, before it was locked, another process took it for one of the dead. */
 bool Unfinished::lock() {
   flock(m_descriptor, LOCK_EX);
-  if (leadsTo(m_path, m_descriptor)) return true;
-  close(m_descriptor);
-  m_descriptor = -1;
-  return false;
+  return leadsTo(m_path, m_descriptor);
 }
 
 void Unfinished::discard() noexcept {
@@ -159,93 +146,10 @@ void synchronize(int descriptor) {
     throw std::runtime_error(std::strerror(errno));
 }
 
-void synchronize(const fs::path& path) {
-  const int descriptor = open(orHere(path).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) throw std::runtime_error(std::strerror(errno));
-  try {
-    synchronize(descriptor);
-  } catch (const std::exception&) {
-    close(descriptor);
-    throw;
-  }
-  close(descriptor);
-}
-
-namespace {
-
-struct NewFiles {
-  std::mutex mutex;
-  std::set<fs::path> all;
-};
-
-/** The new files of this process. They are never destroyed, as Unfinished's registry. */
-NewFiles& newFiles() {
-  static NewFiles* const theOnes = new NewFiles;
-  return *theOnes;
-}
-
-fs::path keyOf(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
-
-void check(bool success, const fs::path& file) {
-  if (success) return;
-  if (errno == EEXIST) throw PlaceTaken();
-  throw fs::filesystem_error("cannot be renamed", file, {errno, std::generic_category()});
-}
-
-}  // namespace
-
-void declareNew(const fs::path& file) {
-  const std::lock_guard lock(newFiles().mutex);
-  newFiles().all.insert(keyOf(file));
-}
-
-Placement::Placement(fs::path file, const fs::path& place)
-    : m_file(std::move(file)), m_place(place), m_key(keyOf(place)) {
-  const std::lock_guard lock(newFiles().mutex);
-  m_isNew = newFiles().all.count(m_key) > 0;
-}
-
-void Placement::checkFree() const {
-  if (m_isNew && !m_file.empty() && fs::exists(fs::symlink_status(m_place))) throw PlaceTaken();
-}
-
-void Placement::take() const {
-  if (m_file.empty()) {
-    if (!m_isNew) fs::remove(m_place);
-  } else if (m_isNew) {
-    takeNew();
-    const std::lock_guard lock(newFiles().mutex);
-    newFiles().all.erase(m_key);
-  } else {
-    fs::rename(m_file, m_place);
-  }
-}
-
-/** File systems that cannot rename without replacing have links, or neither: then only a look
- * tells. */
-void Placement::takeNew() const {
-  const char *from = m_file.c_str(), *to = m_place.c_str();
-  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return;
-  if (errno != EINVAL && errno != ENOSYS) check(false, m_file);
-  if (link(from, to) == 0) return check(unlink(from) == 0, m_file);
-  if (errno != EPERM && errno != EOPNOTSUPP) check(false, m_file);
-  checkFree();
-  fs::rename(m_file, m_place);
-}
-
-OpenFolder::OpenFolder(const fs::path& folder)
-    : m_descriptor(
-          open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (m_descriptor < 0) throw std::runtime_error(std::strerror(errno));
-}
-
-OpenFolder::~OpenFolder() { close(m_descriptor); }
-
-void OpenFolder::synchronize() const { strict_files::synchronize(m_descriptor); }
-
-void keepAndReport(const fs::path& target, Unfinished& unfinished, const PlaceTaken& why) {
-  throw std::runtime_error(target.string() + ": cannot be written: " + why.what() +
-                           "; what belongs there is now " + unfinished.keep().string());
+Descriptor openToSync(const fs::path& path) {
+  Descriptor there(open(orHere(path).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (there < 0) throw std::runtime_error(std::strerror(errno));
+  return there;
 }
 
 }  // namespace strict_files

@@ -51,8 +51,6 @@ struct Option {
   std::function<std::string()> text = {};  ///< the value, so that set() takes it
   /** \throw std::invalid_argument "is 'x', expected a number" */
   std::function<void(const std::string&)> set = {};
-  /** \throw std::invalid_argument "is -1, expected a number of 0 or more" */
-  std::function<void()> check = {};
 };
 
 /** The options of a struct, described once. How they are read from .ini files, YAML and command
@@ -80,17 +78,15 @@ class OptionList {
   void add(const char* name, T& value, const char* unit, const Range& range, const char* help) {
     if constexpr (std::is_enum_v<T>)
       addChoice(name, value, help);
-    else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>)
-      addNumber(
-          name, unit, help, wholeIn<T>(range), true,
-          [&value] { return static_cast<double>(value); },
-          [&value](double number) { value = static_cast<T>(number); });
-    else if constexpr (std::is_floating_point_v<T>)
-      addNumber(
-          name, unit, help, range, false, [&value] { return static_cast<double>(value); },
-          [&value](double number) { value = static_cast<T>(number); });
     else if constexpr (std::is_same_v<T, std::optional<double>>)
-      addOptional(name, value, unit, range, help);
+      addNumber(
+          name, unit, help, range, Number::OrNone, [&value] { return value; },
+          [&value](std::optional<double> number) { value = number; });
+    else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>)
+      addNumber(
+          name, unit, help, rangeOf<T>(range), std::is_integral_v<T> ? Number::Whole : Number::Any,
+          [&value] { return static_cast<double>(value); },
+          [&value](std::optional<double> number) { value = static_cast<T>(*number); });
     else
       addOther(name, value, unit, help);
   }
@@ -109,10 +105,15 @@ class OptionList {
   void remove(const std::string& name);
 
  private:
+  enum class Number { Any, Whole, OrNone };
+
+  /** Within what the type holds. */
   template <class T>
-  static Range wholeIn(Range range) {
-    range.low = std::max(range.low, static_cast<double>(std::numeric_limits<T>::lowest()));
-    range.high = std::min({range.high, static_cast<double>(std::numeric_limits<T>::max()), 0x1p53});
+  static Range rangeOf(Range range) {
+    using Limits = std::numeric_limits<T>;
+    if (!Limits::is_integer) return range;
+    range.low = std::max(range.low, static_cast<double>(Limits::lowest()));
+    range.high = std::min({range.high, static_cast<double>(Limits::max()), 0x1p53});
     return range;
   }
   template <class E>
@@ -124,11 +125,11 @@ class OptionList {
         [&value](std::size_t i) { value = choicesOf(E())[i].second; });
   }
   void addNumber(const char* name, const char* unit, const char* help, const Range& range,
-                 bool whole, std::function<double()> get, std::function<void(double)> set);
-  void addOptional(const char* name, std::optional<double>& value, const char* unit,
-                   const Range& range, const char* help);
+                 Number kind, const std::function<std::optional<double>()>& get,
+                 const std::function<void(std::optional<double>)>& set);
   void addWord(const char* name, const char* help, const std::vector<std::string>& words,
-               std::function<std::string()> get, std::function<void(std::size_t)> set);
+               const std::function<std::string()>& get,
+               const std::function<void(std::size_t)>& set);
   void addOther(const char* name, bool& value, const char* unit, const char* help);
   void addOther(const char* name, std::string& value, const char* unit, const char* help);
   void addOther(const char* name, Eigen::Vector3d& value, const char* unit, const char* help);
@@ -136,7 +137,8 @@ class OptionList {
   std::vector<Option> m_options;
 };
 
-/** \throw std::invalid_argument "owner::option is ...": a value is not what it may be. */
+/** Sets each option to what it is. \throw std::invalid_argument "owner::option is ...": a value is
+ * not what it may be. */
 void checkAll(const OptionList& list, const std::string& owner);
 
 /** \param options a struct with describe(OptionList&) \param owner its name, for errors

@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace strict_files {
 
-class Placement;
 class Unfinished;
 
 /** A file that is written beside its place and takes its name only when it is complete and on the
@@ -29,8 +29,7 @@ class StagedFile {
   /** Where to write: an empty file in the target's folder, with a name that nothing else has and
    * that ends like the target's. Writers fill this file, they do not replace it. */
   const std::filesystem::path& path() const;
-  /** Gives the closed file its name. \throw std::runtime_error naming the target; if it was to be
-   * new (declareNew()) and is there, what was written is kept under another name, which is said. */
+  /** Gives the closed file its name. \throw std::runtime_error naming the target. */
   void commit() { commit(Disk::Now); }
   /** Later: it takes its name at once, for what OutputFolder has on the disk before it counts. */
   enum class Disk { Now, Later };
@@ -61,14 +60,11 @@ class OutputFolder {
   void takeAlong(const std::string& lock);
   /** Puts these files in place, in this order; may be called again with others. One that was not
    * written removes its predecessor, so that files of different maps are never side by side. \throw
-   * std::runtime_error naming the file. It cannot be written, something that is no regular file has
-   * its place, or it is there although it was to be new (declareNew()). Then the files that have no
-   * place are kept in a folder beside them, which is said. */
+   * std::runtime_error naming the file. It cannot be written, or something that is no regular file
+   * has its place. */
   void commit(const std::vector<std::string>& names);
 
  private:
-  Placement prepare(const std::string& name) const;
-
   std::filesystem::path m_folder;
   std::unique_ptr<Unfinished> m_staging;
 };
@@ -97,14 +93,26 @@ class ScratchFile {
   std::uint64_t m_end = 0;
 };
 
-/** Says that a file is to be new: what others put there from now on is not replaced by this process
- * (StagedFile, OutputFolder). Its own is, once it has its place. */
-void declareNew(const std::filesystem::path& file);
-
 /** Ends the process at once, as _exit() does, after it removed all files and folders that it began
  * (StagedFile, OutputFolder) and that have not taken their place. For programs that are told to
  * leave; any thread may call it, but no handler of a signal. */
 [[noreturn]] void leaveWithoutOutputs(int status);
+
+/** A file or folder that is open, and closed with this object. */
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : m_number(number) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& o) noexcept : m_number(std::exchange(o.m_number, -1)) {}
+  Descriptor& operator=(Descriptor o) noexcept {
+    std::swap(m_number, o.m_number);
+    return *this;
+  }
+  operator int() const { return m_number; }
+
+ private:
+  int m_number;  ///< below 0: it could not be opened
+};
 
 /** A lock between processes (flock), held as long as this lives, or as the process does. The file
  * is made if need be. Where the file system has no locks, or the file cannot be made,
@@ -116,14 +124,11 @@ class FileLock {
   FileLock(const std::filesystem::path& file, Kind kind);
   /** \return nothing if somebody holds it, or may, as this process has too many files open */
   static std::optional<FileLock> tryTo(const std::filesystem::path& file, Kind kind);
-  ~FileLock();
-  FileLock(FileLock&& o) noexcept;
-  FileLock& operator=(FileLock o) noexcept;
 
  private:
   explicit FileLock(const std::filesystem::path& file);
 
-  int m_descriptor;
+  Descriptor m_descriptor;
 };
 
 }  // namespace strict_files

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <set>
 #include <string>
 
@@ -43,16 +42,6 @@ class StrictYaml {
     static_assert(Limits::is_integer);
     return static_cast<T>(whole(node, expected, static_cast<double>(Limits::lowest()),
                                 static_cast<double>(Limits::max())));
-  }
-  /** One of some words. */
-  template <typename T>
-  T choice(const YAML::Node& node, const std::string& field,
-           const std::map<std::string, T>& choices) const {
-    const std::string found = text(node, field);
-    if (const auto it = choices.find(found); it != choices.end()) return it->second;
-    std::string expected;
-    for (const auto& [name, value] : choices) expected += (expected.empty() ? "" : ", ") + name;
-    fail(node, field + ": expected one of " + expected + ", found '" + found + "'");
   }
   std::string text(const YAML::Node& node, const std::string& field) const;
   /** A finite number. */
