@@ -53,17 +53,6 @@ std::string Summary::note(const labeled_cloud::StreamedObservation& observation)
   return "skipped, " + observation.skipped;
 }
 
-std::optional<semantic_octree::LabelReliability> Summary::labelReliability() const {
-  if (labels.empty()) return std::nullopt;
-  std::vector<double> accuracies, correlations;
-  for (const semantic_octree::LabelReliability& scan : labels) {
-    accuracies.push_back(scan.accuracy);
-    correlations.push_back(scan.correlation);
-  }
-  return semantic_octree::LabelReliability{measuring::quantile(accuracies, 0.5),
-                                           measuring::quantile(correlations, 0.5)};
-}
-
 std::size_t Summary::numSkipped() const { return read - inserted - pictures - poses; }
 
 std::string Summary::skippedText() const {
@@ -158,8 +147,6 @@ ordered_json toJson(const Summary& s, const SemanticOcTree& tree, bool countVoxe
       {"millisecondsPerScan",
        {{"conversion", timesJson(s.conversionTimes)}, {"insertion", timesJson(s.insertionTimes)}}},
       {"map", mapJson(tree, countVoxels)}};
-  if (const auto labels = s.labelReliability())
-    json["labels"] = {{"accuracy", labels->accuracy}, {"correlation", labels->correlation}};
   if (s.slam)
     json["slam"] = {{"keyframes", s.slam->keyframes},
                     {"loops", s.slam->loops},
@@ -254,9 +241,8 @@ void MapBuilder::insert(const std::vector<fs::path>& rawlogs, labeled_cloud::Sca
           << " scans inserted, " << m_summary.skippedText() << std::endl;
   if (m_mapper) noteSlam();
   if (m_mapper && m_hadContent) checkFoundInMap();
-  noteLabels();
-  for (const auto& doubt : m_doubts.warnings(m_map.tree(), m_map.insertionOptions.scan.maxRange))
-    notes() << "Warning: " << doubt << std::endl;
+  if (m_summary.conversion.points > 0 && m_map.tree().numClasses() > 1)
+    notes() << m_summary.labeledText() << std::endl;
 }
 
 void MapBuilder::checkFoundInMap() const {
@@ -264,19 +250,6 @@ void MapBuilder::checkFoundInMap() const {
     throw std::runtime_error(
         "no scan was found in the map that is there: nothing is added to it; poses have to begin "
         "near where the robot is in it, and another place needs a folder of its own");
-}
-
-void MapBuilder::noteLabels() const {
-  if (m_summary.conversion.points > 0 && m_map.tree().numClasses() > 1)
-    notes() << m_summary.labeledText() << std::endl;
-  const auto labels = m_summary.labelReliability();
-  constexpr double kWorthTelling = 0.05;
-  if (!labels || labels->accuracy > m_map.tree().filterParameters().accuracy - kWorthTelling)
-    return;
-  notes()
-      << "Labels that share a voxel agree as if " << std::lround(100 * labels->accuracy)
-      << " % of them were right, and are trusted so far: wrong labels, or voxels larger than things"
-      << std::endl;
 }
 
 void MapBuilder::deskew(StreamedObservation& observation) const {
@@ -308,7 +281,6 @@ void MapBuilder::insertScan(const StreamedObservation& observation) try {
   CPose3D T_map_robot = observation.T_map_robot;
   m_summary.insertionTimes.push_back(timeOf([&] { report = insertIntoMap(scan, T_map_robot); }));
   m_summary.add(report);
-  if (scan.counts.labeled > 0) m_summary.labels.push_back(report.labels);
   m_summary.add(scan.counts);
   m_summary.withoutLabels += scan.labelsMissing;
   m_summary.conversionTimes.push_back(observation.milliseconds);
@@ -323,7 +295,6 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   if (!m_mapper) {
     const Eigen::Isometry3d T = labeled_cloud::toEigen(T_map_robot + scan.T_robot_sensor);
     m_calibrator.add(scan.cloud, T, m_map.insertionOptions.scan);
-    m_doubts.add(scan, T);
     return m_map.insertScan(scan, T_map_robot);
   }
   m_clock.setMaxGap(m_map.insertionOptions.maxGap);
@@ -336,7 +307,6 @@ semantic_octree::InsertionReport MapBuilder::insertIntoMap(const LabeledScan& sc
   const auto inserted = m_mapper->insert(seen, T_odometry_robot, m_seconds);
   if (!m_hasOdometry) T_map_robot = labeled_cloud::toMrpt(inserted.place.T_map_robot);
   m_clock.note(scan.timestamp);
-  m_doubts.add(scan, inserted.place.T_map_robot * seen.T_robot_sensor);
   const semantic_slam::Slam::Added& added = *inserted.place.added;
   m_placed.push_back(
       {mrpt::Clock::toDouble(scan.timestamp), added.keyframe, added.T_keyframe_robot});

@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "Doubts.h"
 #include "Terminal.h"
 
 namespace rawlog2semantic_map {
@@ -47,8 +46,6 @@ struct Summary {
   /** Sums over the scans that were inserted. */
   labeled_cloud::ScanCounts conversion;
   semantic_octree::InsertionReport insertion;  ///< of points that were left out alone
-  /** How far the labels of each scan that has any were trusted. */
-  std::vector<semantic_octree::LabelReliability> labels;
   /** Milliseconds of each inserted scan: making the cloud, inserting it. */
   std::vector<double> conversionTimes, insertionTimes;
   /** Where an abstraction is kept, after each inserted scan. */
@@ -61,8 +58,6 @@ struct Summary {
   /** Counts it. \return what became of it, in words */
   std::string note(const labeled_cloud::StreamedObservation& observation);
   std::size_t numSkipped() const;
-  /** The medians of all scans with labels; nothing if there are none. */
-  std::optional<semantic_octree::LabelReliability> labelReliability() const;
   /** What share of the points has a label, with a warning below a half. */
   std::string labeledText() const;
   /** "3 skipped (2 outside the trajectory, 1 CObservationImage)" */
@@ -112,8 +107,6 @@ class MapBuilder {
   void add(const labeled_cloud::StreamedObservation& observation);
   /** By the motion between the scan's time and that of the point farthest from it. */
   void deskew(labeled_cloud::StreamedObservation& observation) const;
-  /** Tells if labels contradict each other more than their parameters say. */
-  void noteLabels() const;
   void insertScan(const labeled_cloud::StreamedObservation& observation);
   void noteAbstraction();
 
@@ -130,8 +123,7 @@ class MapBuilder {
   semantic_octree::Calibrator m_calibrator;       ///< the mapper has its own
   std::optional<semantic_slam::Mapper> m_mapper;  ///< if poses are corrected
   bool m_hasOdometry = true;
-  const bool m_hadContent;  ///< the map, before the first scan
-  Doubts m_doubts;
+  const bool m_hadContent;                 ///< the map, before the first scan
   semantic_map::ObservationClock m_clock;  ///< of its scans
   double m_seconds = 0;                    ///< that passed, by the clock
   struct PlacedScan {

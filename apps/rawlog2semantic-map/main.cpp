@@ -161,26 +161,6 @@ labeled_cloud::Trajectory trajectoryOf(const Cli& cli) {
       cli.rawlogs, "give --trajectory or --slam, or --static-pose if the robot stood still");
 }
 
-/** Where scans go beside the map. */
-class SideOutputs {
- public:
-  SideOutputs(const Cli& cli, const ClassTable& table) {
-    if (!cli.saveLabeled.empty()) m_log.emplace(cli.saveLabeled, table);
-    if (!cli.preview.empty()) m_preview.emplace(cli.preview, table);
-  }
-  void write(const labeled_cloud::LabeledScan& scan, const mrpt::poses::CPose3D& T_map_robot) {
-    if (m_log) m_log->write(scan, T_map_robot);
-    if (m_preview) m_preview->write(scan);
-  }
-  void finish() {
-    if (m_log) m_log->finish();
-  }
-
- private:
-  std::optional<ScanLog> m_log;
-  std::optional<Preview> m_preview;
-};
-
 /** The scans of rawlogs. */
 struct Scans {
   /** Cli, table, settings and trajectory must outlive them. */
@@ -233,9 +213,13 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   labels.confusion = confusionOf(cli, table, config, trajectory, stop);
   if (labels.confusion) map.tree().setClassPrior(labels.confusion->classShares());
   Scans scans(cli, table, config, trajectory);
-  SideOutputs outputs(cli, table);
+  std::optional<ScanLog> log;
+  std::optional<Preview> preview;
+  if (!cli.saveLabeled.empty()) log.emplace(cli.saveLabeled, table);
+  if (!cli.preview.empty()) preview.emplace(cli.preview, table);
   MapBuilder builder(map, trajectory, [&](const auto& scan, const auto& T) {
-    outputs.write(scan, T);
+    if (log) log->write(scan, T);
+    if (preview) preview->write(scan);
     if (live) live->show(scan, T, builder.summary());
   });
   if (cli.trajectory.empty()) builder.countPoses();
@@ -248,7 +232,7 @@ Summary buildMap(const Cli& cli, Config config, const StopRequest& stop, LiveSca
   if (builder.summary().inserted == 0)
     throw std::runtime_error("nothing to map: no observation was inserted, " +
                              builder.summary().skippedText());
-  outputs.finish();
+  if (log) log->finish();
   if (cli.slam) strict_files::writeText(trajectoryFile, builder.trajectory());
   return builder.summary();
 }

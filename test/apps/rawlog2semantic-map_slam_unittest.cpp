@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -81,70 +82,83 @@ double shareOccupiedIn(const SemanticOcTree& other, const SemanticOcTree& map) {
   return double(there) / occupied;
 }
 
-TEST(Rawlog2SemanticMapWithSlam, correctsATrajectoryThatDrifts) {
-  const TemporaryFolder folder;
-  const std::string rawlog = (folder / "park.rawlog").string();
-  succeeded(runProgram("synth-rawlog", {"-o", rawlog, "--scene", "park", "--sensor", "lidar",
-                                        "--frames", "235", "--rate", "1", "--speed", "1", "--rings",
-                                        "32", "--columns", "360", "--label-noise", "0.1"}));
-  const Poses truth = readPoses(folder.read("park.tum")), noisy = drifting(truth);
-  const auto noisyFile = folder.write("noisy.tum", textOf(noisy));
-  const auto mapWith = [&](const fs::path& trajectory, const Words& more) {
-    const std::string out = (folder / "out").string();
-    succeeded(runProgram("rawlog2semantic-map",
-                         joined({"-f", "--output", out, "--resolution", "0.4", "--max-range", "20",
-                                 "--trajectory", trajectory.string(), rawlog},
-                                more)));
-    return semantic_octree::loadTree(out + "/map.semantic");
-  };
-  const SemanticOcTree trueMap = mapWith(folder / "park.tum", {}),
-                       map = mapWith(noisyFile, {"--slam"});
-  EXPECT_GT(shareOccupiedIn(trueMap, map), 0.8);
-
-  const Poses corrected = readPoses(folder.read("out/trajectory.tum"));
-  const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
-  const auto& slam = summary["slam"];
-  EXPECT_EQ(corrected.size(), summary["observations"]["inserted"]) << "each scan has a pose";
-  EXPECT_LE(slam["keyframes"], corrected.size());
-  EXPECT_EQ(slam["torn"], 0);
-  EXPECT_TRUE(slam["warnings"].empty()) << slam["warnings"];
-  EXPECT_GT(slam["loops"], 0);
-  ASSERT_GT(corrected.size(), 100u);
-  const double last = corrected.rbegin()->first;
-  const auto at = [last](const Poses& poses) {  // times are those of the rawlog, to a microsecond
-    return std::prev(poses.upper_bound(last + 1e-4))->second;
-  };
-  EXPECT_GT(distance(at(noisy), at(truth)), 3);
-  EXPECT_LT(distance(corrected.rbegin()->second, at(truth)), 0.3);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "out"), {}), 5);
-}
-
 /** A drive along the village's street, and what is not known of it. */
-struct Street {
-  TemporaryFolder folder;
-  std::string rawlog = (folder / "street.rawlog").string();
+class Street : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = std::make_unique<TemporaryFolder>();
+    drive("street.rawlog");
+    truth = readPoses(folder->read("street.tum"));
+  }
+  static void TearDownTestSuite() { folder = nullptr; }
 
-  /** \param turnTime of the LiDAR, s */
-  explicit Street(const std::string& turnTime = "0") {
+  static std::string path(const std::string& name) { return (*folder / name).string(); }
+  static void drive(const std::string& rawlog, const Words& more = {}) {
     succeeded(runProgram(
         "synth-rawlog",
-        {"-o", rawlog, "--scene", "village", "--sensor", "lidar", "--frames", "50", "--rate", "1",
-         "--speed", "1", "--rings", "32", "--columns", "360", "--turn-time", turnTime}));
+        joined({"-o", path(rawlog), "--scene", "village", "--sensor", "lidar", "--frames", "50",
+                "--rate", "1", "--speed", "1", "--rings", "32", "--columns", "360"},
+               more)));
   }
-  ProgramRun map(const std::string& output, const Words& more) const {
-    return runProgram("rawlog2semantic-map",
-                      joined({"-f", "--output", (folder / output).string(), "--resolution", "0.2",
-                              "--max-range", "20", rawlog},
-                             more));
+  static ProgramRun map(const std::string& output, const Words& more,
+                        const std::string& rawlog = "street.rawlog") {
+    return runProgram("rawlog2semantic-map", joined({"-f", "--output", path(output), "--resolution",
+                                                     "0.2", "--max-range", "20", path(rawlog)},
+                                                    more));
   }
+  /** With --slam, by odometry that has these poses. */
+  static ProgramRun mapBy(const Poses& odometry, const std::string& output, const Words& more) {
+    const auto file = folder->write("odometry.tum", textOf(odometry)).string();
+    return map(output, joined({"--slam", "--trajectory", file}, more));
+  }
+  static void expectTruth(const std::string& output, double within,
+                          const Eigen::Isometry3d& T = Eigen::Isometry3d::Identity()) {
+    const Poses found = readPoses(folder->read(output + "/trajectory.tum"));
+    EXPECT_EQ(found.size(), truth.size()) << "each scan has a pose";
+    for (const auto& [time, T_found] : found)  // to a microsecond
+      EXPECT_LT(distance(T * T_found, std::prev(truth.upper_bound(time + 1e-4))->second), within)
+          << time;
+  }
+  static nlohmann::json slamOf(const std::string& output) {
+    return nlohmann::json::parse(folder->read(output + "/summary.json"))["slam"];
+  }
+
+  static inline std::unique_ptr<TemporaryFolder> folder;
+  static inline Poses truth;
 };
 
 }  // namespace
 
-TEST(Rawlog2SemanticMapWithSlam, bringsADriveIntoTheFrameOfAMap) {
-  const Street street;
-  const Poses truth = readPoses(street.folder.read("street.tum"));
-  ASSERT_EQ(street.map("before", {}).status, 0);
+TEST_F(Street, isMappedIntoTilesAsInMemoryAndTheNextDriveIsFoundThere) {
+  const std::string tiles = path("tiles");
+  const Words intoTiles = {"--tiles", tiles, "--tile-size", "12.8", "--memory", "0.1"};
+  succeeded(mapBy(drifting(truth), "plain", {}));
+  expectTruth("plain", 0.15);
+  EXPECT_EQ(slamOf("plain")["torn"], 0);
+  EXPECT_TRUE(slamOf("plain")["warnings"].empty()) << slamOf("plain")["warnings"];
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("plain")), {}), 5);
+  succeeded(mapBy(drifting(truth), "tiled", intoTiles));
+  EXPECT_TRUE(semantic_octree::loadMap(tiles) ==
+              semantic_octree::loadTree(path("plain/map.semantic")));
+  EXPECT_EQ(folder->read("tiled/trajectory.tum"), folder->read("plain/trajectory.tum"));
+
+  const std::size_t leaves = semantic_octree::loadMap(tiles).getNumLeafNodes();
+  const auto moved = [&](double meters) {
+    Poses poses = truth;
+    for (auto& [time, T] : poses) T.pretranslate(Eigen::Vector3d(meters, 0, 0));
+    return poses;
+  };
+  expectRefusal(mapBy(moved(2000), "far", intoTiles),
+                {"no scan was found in the map that is there"});
+  EXPECT_EQ(semantic_octree::loadMap(tiles).getNumLeafNodes(), leaves);
+  const ProgramRun second = succeeded(mapBy(moved(0.7), "second", intoTiles));
+  EXPECT_TRUE(contains(second.output, "There is a map"));
+  expectTruth("second", 0.15);
+  EXPECT_LT(double(semantic_octree::loadMap(tiles).getNumLeafNodes()), 1.2 * double(leaves));
+}
+
+TEST_F(Street, isBroughtIntoTheFrameOfAMap) {
+  succeeded(map("before", {}));
   // Odometry drifts, and begins 1.2 m and 3 degrees beside where it is in that map.
   Poses odometry = drifting(truth);
   const Eigen::Isometry3d T_first = truth.begin()->second;
@@ -152,109 +166,51 @@ TEST(Rawlog2SemanticMapWithSlam, bringsADriveIntoTheFrameOfAMap) {
                                   Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ()) *
                                   T_first.inverse();
   for (auto& [time, T] : odometry) T = T_off * T;
-  const auto noisy = street.folder.write("noisy.tum", textOf(odometry)).string();
-  succeeded(street.map("after", {"--trajectory", noisy, "--slam", "--reference",
-                                 (street.folder / "before/map.semantic").string()}));
-  const Poses corrected = readPoses(street.folder.read("after/trajectory.tum"));
-  ASSERT_GT(corrected.size(), 40u);
-  for (const auto& [time, T] : corrected) {
-    const auto& T_true = std::prev(truth.upper_bound(time + 1e-4))->second;
-    EXPECT_LT(distance(T, T_true), 0.1) << time;
-  }
-  const auto slam = nlohmann::json::parse(street.folder.read("after/summary.json"))["slam"];
-  EXPECT_GT(slam["referenced"], 10);
-  EXPECT_EQ(slam["loops"], 0);
+  succeeded(mapBy(odometry, "after", {"--reference", path("before/map.semantic")}));
+  expectTruth("after", 0.1);
+  EXPECT_GT(slamOf("after")["referenced"], 10);
+  EXPECT_EQ(slamOf("after")["loops"], 0);
 }
 
-TEST(Rawlog2SemanticMapWithSlam, mapsIntoTilesWhatItMapsInMemoryAndFindsTheNextDriveThere) {
-  const Street street;
-  const Poses truth = readPoses(street.folder.read("street.tum"));
-  const auto noisy = street.folder.write("noisy.tum", textOf(drifting(truth))).string();
-  const std::string tiles = (street.folder / "tiles").string();
-  const Words intoTiles = {"--tiles", tiles, "--tile-size", "12.8", "--memory", "0.1"};
-  const auto with = [&](Words more, const std::string& trajectory) {
-    more.insert(more.end(), {"--slam", "--trajectory", trajectory});
-    return more;
-  };
-  ASSERT_EQ(street.map("plain", with({}, noisy)).status, 0);
-  succeeded(street.map("tiled", with(intoTiles, noisy)));
-  EXPECT_TRUE(semantic_octree::loadMap(tiles) ==
-              semantic_octree::loadTree((street.folder / "plain/map.semantic").string()));
-  EXPECT_EQ(street.folder.read("tiled/trajectory.tum"), street.folder.read("plain/trajectory.tum"));
-
-  const std::size_t leaves = semantic_octree::loadMap(tiles).getNumLeafNodes();
-  const auto moved = [&](double meters) {
-    Poses poses = truth;
-    for (auto& [time, T] : poses) T.pretranslate(Eigen::Vector3d(meters, 0, 0));
-    return street.folder.write("moved.tum", textOf(poses)).string();
-  };
-  const ProgramRun far = street.map("far", with(intoTiles, moved(2000)));
-  EXPECT_EQ(far.status, 1);
-  EXPECT_TRUE(contains(far.errors, "no scan was found in the map that is there"));
-  EXPECT_EQ(semantic_octree::loadMap(tiles).getNumLeafNodes(), leaves);
-
-  const ProgramRun second = succeeded(street.map("second", with(intoTiles, moved(0.7))));
-  EXPECT_TRUE(contains(second.output, "There is a map"));
-  for (const auto& [time, T] : readPoses(street.folder.read("second/trajectory.tum")))
-    EXPECT_LT(distance(T, std::prev(truth.upper_bound(time + 1e-4))->second), 0.15) << time;
-  EXPECT_LT(double(semantic_octree::loadMap(tiles).getNumLeafNodes()), 1.2 * double(leaves));
-}
-
-TEST(Rawlog2SemanticMapWithSlam, mapsARawlogWithoutPoses) {
-  const Street street;
-  const auto bare = street.folder / "bare.rawlog";
+TEST_F(Street, isMappedWithoutPoses) {
   {
-    mrpt::io::CFileGZOutputStream file(bare.string());
+    mrpt::io::CFileGZOutputStream file(path("bare.rawlog"));
     auto archive = mrpt::serialization::archiveFrom(file);
-    labeled_cloud::RawlogReader reader(street.rawlog);
+    labeled_cloud::RawlogReader reader(path("street.rawlog"));
     while (const auto entry = reader.next())
       for (const auto& observation : entry->observations)
         if (!std::dynamic_pointer_cast<mrpt::obs::CObservationRobotPose>(observation))
           archive << *observation;
   }
-  const std::string out = (street.folder / "out").string();
-  const Words arguments = {"--output",    out,  "--resolution", "0.2",
-                           "--max-range", "20", bare.string()};
-  EXPECT_EQ(runProgram("rawlog2semantic-map", arguments).status, 1) << "it needs poses";
-  auto slam = arguments;
-  slam.emplace_back("--slam");
-  succeeded(runProgram("rawlog2semantic-map", slam));
-  const Poses truth = readPoses(street.folder.read("street.tum")),
-              found = readPoses(street.folder.read("out/trajectory.tum"));
-  ASSERT_EQ(found.size(), 50u);
-  for (const auto& [time, T] : found) {
-    const auto& T_true = std::prev(truth.upper_bound(time + 1e-4))->second;
-    EXPECT_LT(distance(truth.begin()->second * T, T_true), 0.1) << time;
-  }
-  slam.emplace_back("--static-pose");
-  EXPECT_EQ(runProgram("rawlog2semantic-map", slam).status, 64) << "it moves, or it does not";
+  EXPECT_EQ(map("bare", {}, "bare.rawlog").status, 1) << "it needs poses";
+  succeeded(map("bare", {"--slam"}, "bare.rawlog"));
+  expectTruth("bare", 0.1, truth.begin()->second);
+  EXPECT_EQ(map("bare", {"--slam", "--static-pose"}, "bare.rawlog").status, 64)
+      << "it moves, or it does not";
 }
 
-TEST(Rawlog2SemanticMapWithSlam, saysWhyAReferenceCannotBeUsed) {
-  const Street street;
-  const auto fails = [&](const std::string& reference, const std::string& why) {
-    const ProgramRun run = street.map("out", {"--slam", "--reference", reference});
-    EXPECT_EQ(run.status, 1) << run.errors;
-    EXPECT_TRUE(contains(run.errors, reference));
-    EXPECT_TRUE(contains(run.errors, why));
-    EXPECT_FALSE(fs::exists(street.folder / "out"));
-  };
-  fails((street.folder / "none.semantic").string(), "No such file");
-  const std::string other = (street.folder / "other.semantic").string();
+TEST_F(Street, saysWhyAReferenceCannotBeUsed) {
+  const std::string other = path("other.semantic"), none = path("none.semantic");
   semantic_types::ClassTable things;
   things.add("thing", {1, 2, 3});
   semantic_octree::saveTree(SemanticOcTree(0.2, things), other);
-  fails(other, "class table is another one");
-  EXPECT_EQ(street.map("out", {"--reference", other}).status, 64) << "needs --slam";
+  for (const auto& [reference, why] :
+       {std::pair(none, "No such file"), {other, "class table is another one"}}) {
+    const ProgramRun run = map("out", {"--slam", "--reference", reference});
+    EXPECT_EQ(run.status, 1) << run.errors;
+    EXPECT_TRUE(contains(run.errors, reference) && contains(run.errors, why)) << run.errors;
+    EXPECT_FALSE(fs::exists(path("out")));
+  }
+  EXPECT_EQ(map("out", {"--reference", other}).status, 64) << "needs --slam";
 }
 
-TEST(Rawlog2SemanticMapWithSlam, scansThatTakeTimeAreDeskewedAlsoWherePosesAreRight) {
-  const Street still, turning("1");  // a meter a turn
-  ASSERT_EQ(still.map("out", {}).status, 0);
-  const SemanticOcTree right = semantic_octree::loadTree(still.folder / "out/map.semantic");
+TEST_F(Street, isDeskewedWhereScansTakeTimeAlsoIfPosesAreRight) {
+  drive("turning.rawlog", {"--turn-time", "1"});  // a meter a turn
+  succeeded(map("still", {}));
+  const SemanticOcTree right = semantic_octree::loadTree(path("still/map.semantic"));
   for (const Words& how : {Words{}, Words{"--slam"}}) {
-    ASSERT_EQ(turning.map("out", how).status, 0);
-    const auto map = semantic_octree::loadTree(turning.folder / "out/map.semantic");
+    succeeded(map("turning", how, "turning.rawlog"));
+    const auto map = semantic_octree::loadTree(path("turning/map.semantic"));
     EXPECT_GT(shareOccupiedIn(right, map), 0.65) << how.size();
   }
 }
