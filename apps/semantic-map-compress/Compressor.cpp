@@ -26,8 +26,13 @@ namespace {
 }  // namespace
 
 Compressor::Compressor(SemanticOcTree& map, const TermCatalog& catalog, AbstractionOptions ofAll,
-                       CompressedPlace place)
-    : m_map(map), m_catalog(catalog), m_options(std::move(ofAll)), m_place(std::move(place)) {
+                       std::optional<semantic_octree::MapFolderOptions> tiles,
+                       std::filesystem::path scratch)
+    : m_map(map),
+      m_catalog(catalog),
+      m_options(std::move(ofAll)),
+      m_tiles(std::move(tiles)),
+      m_scratch(std::move(scratch)) {
   if (map.empty()) throw std::invalid_argument("the map is empty");
   useBatch(0);
 }
@@ -83,7 +88,7 @@ double Compressor::alphaForBytes(const AbstractionOptions& solution, std::size_t
   const AlphaTrees trees(present);
   const auto bytesOf = [&](double alpha) {
     weigh(solution, alpha);
-    return semantic_octree::fileSize(Compressed(*this).map());
+    return semantic_octree::fileSize(compressed()->tree());
   };
   const std::size_t least = bytesOf(trees.alpha(0));
   if (least > wanted)
@@ -92,17 +97,13 @@ double Compressor::alphaForBytes(const AbstractionOptions& solution, std::size_t
   return trees.largestThat([&](double alpha) { return bytesOf(alpha) <= wanted; });
 }
 
-Compressed::Compressed(Compressor& compressor)
-    : m_folder(compressor.m_place.scratch),
-      m_map(compressor.m_place.tiles ? StoredMap(compressor.abstraction().emptyCompressedMap(),
-                                                 m_folder, *compressor.m_place.tiles)
-                                     : StoredMap(compressor.abstraction().emptyCompressedMap())) {
-  compressor.abstraction().compressTo(m_map.tree());
-}
-
-Compressed::~Compressed() {
-  std::error_code ignored;
-  std::filesystem::remove_all(m_folder, ignored);
+std::unique_ptr<StoredMap> Compressor::compressed() {
+  std::filesystem::remove_all(m_scratch);
+  SemanticOcTree empty = abstraction().emptyCompressedMap();
+  auto map = m_tiles ? std::make_unique<StoredMap>(std::move(empty), m_scratch, *m_tiles)
+                     : std::make_unique<StoredMap>(std::move(empty));
+  abstraction().compressTo(map->tree());
+  return map;
 }
 
 namespace {

@@ -2,9 +2,12 @@
 #include <map_folders/MapFolder.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_abstraction/AbstractionOptions.h>
+#include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "measuring/Measuring.h"
@@ -29,20 +32,15 @@ struct KeptInformation {
   std::optional<double> share;
 };
 
-/** Where compressed maps are while they are made. */
-struct CompressedPlace {
-  /** The folder's options if the map may be larger than memory; none: it is in memory. */
-  std::optional<semantic_octree::MapFolderOptions> tiles;
-  std::filesystem::path scratch;  ///< a folder for that, which comes and goes
-};
-
 /** The compressed trees of one map for different weights. */
 class Compressor {
  public:
-  /** The map keeps G-values from now on. \param ofAll what all solutions have in common \throw
-   * std::invalid_argument the map is empty. */
+  /** The map keeps G-values from now on. \param ofAll what all solutions have in common
+   * \param tiles of compressed maps, if the map may be larger than memory \param scratch a folder
+   * for these, which comes and goes \throw std::invalid_argument the map is empty. */
   Compressor(semantic_octree::SemanticOcTree& map, const TermCatalog& catalog,
-             AbstractionOptions ofAll, CompressedPlace place);
+             AbstractionOptions ofAll, std::optional<semantic_octree::MapFolderOptions> tiles,
+             std::filesystem::path scratch);
 
   std::size_t numBatches() const { return m_catalog.numBatches(); }
   /** Computes the information of this batch's terms in all nodes. */
@@ -56,6 +54,8 @@ class Compressor {
   double alphaFor(const AbstractionOptions& solution, const Target& target);
 
   semantic_octree::Abstraction abstraction() { return semantic_octree::Abstraction(m_map); }
+  /** The present tree as a map. The one before must be gone. */
+  std::unique_ptr<semantic_octree::StoredMap> compressed();
   /** Adds what the measures say about the present batch's terms; one entry a term of the catalog.
    */
   void addKept(const semantic_octree::AbstractionMeasures& measures,
@@ -68,24 +68,9 @@ class Compressor {
   semantic_octree::SemanticOcTree& m_map;
   const TermCatalog& m_catalog;
   AbstractionOptions m_options;
-  CompressedPlace m_place;
+  std::optional<semantic_octree::MapFolderOptions> m_tiles;
+  std::filesystem::path m_scratch;
   std::size_t m_batch = 0;
-  friend class Compressed;
-};
-
-/** The compressor's present tree as a map; one at a time. */
-class Compressed {
- public:
-  explicit Compressed(Compressor& compressor);
-  ~Compressed();
-  Compressed(const Compressed&) = delete;
-  Compressed& operator=(const Compressed&) = delete;
-
-  const semantic_octree::SemanticOcTree& map() { return m_map.tree(); }
-
- private:
-  std::filesystem::path m_folder;
-  semantic_octree::StoredMap m_map;
 };
 
 /** One of a solution's compressed trees. */
@@ -108,12 +93,12 @@ std::vector<CurvePoint> alphaCurve(Compressor& compressor);
 class StageTimer {
  public:
   /** Ends a stage that began when the one before it ended. */
-  void add(const std::string& stage) { m_stages.emplace_back(stage, m_watch.lap()); }
-  const std::vector<std::pair<std::string, double>>& stages() const { return m_stages; }
+  void add(const std::string& stage) { m_stages[stage] = m_watch.lap(); }
+  const nlohmann::ordered_json& stages() const { return m_stages; }
 
  private:
   measuring::Stopwatch m_watch;
-  std::vector<std::pair<std::string, double>> m_stages;
+  nlohmann::ordered_json m_stages;
 };
 
 /** The map to be compressed. */

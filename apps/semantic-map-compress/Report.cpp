@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string>
 
 #include "Application.h"
 #include "figures/FigureScript.h"
@@ -82,41 +83,34 @@ std::vector<std::size_t> presentClasses(const FullMap& map) {
   return present;
 }
 
+/** A row a class, a column a solution. */
 void plotRetainedBars(std::ostream& out, const std::vector<Compression>& compressions,
                       const std::vector<std::size_t>& classes) {
-  const double width = 0.82 / static_cast<double>(compressions.size());
-  for (std::size_t s = 0; s < compressions.size(); ++s) {
-    out << "$retained" << s << " << EOD\n";
-    for (std::size_t i = 0; i < classes.size(); ++i)
-      out << static_cast<double>(i) - 0.41 + width * (static_cast<double>(s) + 0.5) << ' '
-          << 100 * compressions[s].kept[classes[i]].share.value_or(0) << '\n';
-    out << "EOD\n";
+  out << "$retained << EOD\n";
+  for (const std::size_t id : classes) {
+    for (const Compression& c : compressions) out << 100 * c.kept[id].share.value_or(0) << ' ';
+    out << '\n';
   }
-  out << "plot ";
+  out << "EOD\nset style histogram clustered gap 0.5\nset style fill solid 1 noborder\nplot ";
   for (std::size_t s = 0; s < compressions.size(); ++s)
-    out << (s ? ", " : "") << "$retained" << s << " using 1:2:(" << width
-        << ") with boxes fs solid 1 noborder lc rgb '" << colorOf(s) << "' title "
-        << gnuplotText(compressions[s].solution.name);
+    out << (s ? ", " : "") << "$retained using " << s + 1 << " with histograms lc rgb '"
+        << colorOf(s) << "' title " << gnuplotText(compressions[s].solution.name);
   out << '\n';
 }
 
 void plotLeafRatios(std::ostream& out, const std::vector<Compression>& compressions) {
   double highest = 0;
+  out << "$leaves << EOD\n";
   for (std::size_t s = 0; s < compressions.size(); ++s) {
     const double percent = 100 * compressions[s].leafRatio();
     highest = std::max(highest, percent);
-    out << "$leaves" << s << " << EOD\n"
-        << s << ' ' << percent << " \""
-        << mrpt::format("%.3g %%  (%zu)", percent,
-                        compressions[s].measures.compressed.numKnownLeaves)
-        << "\"\nEOD\n";
+    out << s << ' ' << percent << ' ' << std::stoul(colorOf(s) + 1, nullptr, 16)
+        << mrpt::format(" \"%.3g %%  (%zu)\"\n", percent,
+                        compressions[s].measures.compressed.numKnownLeaves);
   }
-  out << "set yrange [0:" << std::max(1e-3, 1.3 * highest) << "]\nplot ";
-  for (std::size_t s = 0; s < compressions.size(); ++s)
-    out << (s ? ", " : "") << "$leaves" << s << " using 1:2:(0.5) with boxes fs solid 1 noborder"
-        << " lc rgb '" << colorOf(s) << "' notitle, $leaves" << s
-        << " using 1:2:3 with labels offset 0,0.8 notitle";
-  out << '\n';
+  out << "EOD\nset yrange [0:" << std::max(1e-3, 1.3 * highest) << "]\n"
+      << "plot $leaves using 1:2:(0.5):3 with boxes fs solid 1 noborder lc rgb variable notitle, "
+         "$leaves using 1:2:4 with labels offset 0,0.8 notitle\n";
 }
 
 }  // namespace
@@ -192,12 +186,6 @@ ordered_json orNull(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json toJson(const StageTimer& times) {
-  ordered_json json = ordered_json::object();
-  for (const auto& [stage, milliseconds] : times.stages()) json[stage] = milliseconds;
-  return json;
-}
-
 ordered_json toJson(const TreeMeasures& tree) {
   return {{"knownLeaves", tree.numKnownLeaves},
           {"allLeaves", tree.numLeaves},
@@ -249,7 +237,7 @@ ordered_json toJson(const Compression& c, const TermCatalog& catalog) {
           {"classes", informationJson(catalog, c.kept, 0, numClasses)},
           {"groups", informationJson(catalog, c.kept, numClasses, catalog.size())},
           {"curve", curveJson(c.curve)},
-          {"milliseconds", toJson(c.times)}};
+          {"milliseconds", c.times.stages()}};
 }
 
 }  // namespace
@@ -271,35 +259,24 @@ ordered_json toJson(const FullMap& map, const TermCatalog& catalog,
             {"tree", toJson(compressions.front().measures.full)}}},
           {"space", spaceJson(compressions.front().solution)},
           {"solutions", solutions},
-          {"milliseconds", toJson(times)}};
+          {"milliseconds", times.stages()}};
 }
 
-std::string toCsv(const TermCatalog& catalog, const std::vector<Compression>& compressions) {
-  std::ostringstream out;
-  out.precision(10);
-  out << "solution,alpha,known leaves,all leaves,full known leaves,full all leaves,leaf ratio,"
-         "all leaf ratio,leaf entropy [bit],full leaf entropy [bit],objective [bit],file bytes";
-  for (std::size_t t = 0; t < catalog.size(); ++t)
-    out << ',' << csvField(catalog.name(t) + " [bit]") << ','
-        << csvField(catalog.name(t) + " retained");
-  for (const auto& [stage, milliseconds] : compressions.front().times.stages())
-    out << ',' << csvField(stage + " [ms]");
-  for (const Compression& c : compressions) {
-    const auto& [full, kept] = std::tie(c.measures.full, c.measures.compressed);
-    out << '\n'
-        << csvField(c.solution.name) << ',' << c.alpha << ',' << kept.numKnownLeaves << ','
-        << kept.numLeaves << ',' << full.numKnownLeaves << ',' << full.numLeaves << ','
-        << c.leafRatio() << ',' << c.allLeafRatio() << ',' << natsToBits(kept.leafEntropy) << ','
-        << natsToBits(full.leafEntropy) << ',' << natsToBits(c.measures.objective) << ','
-        << c.bytes;
-    for (const KeptInformation& k : c.kept) {
-      out << ',' << natsToBits(k.full) << ',';
-      if (k.share) out << *k.share;
+std::string toCsv(const ordered_json& report) {
+  std::string text;
+  for (ordered_json solution : report["solutions"]) {
+    for (const char* list : {"weights", "curve"}) solution.erase(list);
+    if (solution["groups"].empty()) solution.erase("groups");
+    solution["full"] = report["map"]["tree"];
+    std::string header, line;
+    for (const auto& [name, value] : solution.flatten().items()) {
+      const std::string before = header.empty() ? "" : ",";
+      header += before + csvField(name);
+      line += before + (value.is_string() ? csvField(value) : value.is_null() ? "" : value.dump());
     }
-    for (const auto& [stage, milliseconds] : c.times.stages()) out << ',' << milliseconds;
+    text += (text.empty() ? header + '\n' : "") + line + '\n';
   }
-  out << '\n';
-  return out.str();
+  return text;
 }
 
 }  // namespace semantic_map_compress

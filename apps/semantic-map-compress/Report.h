@@ -49,7 +49,8 @@ nlohmann::ordered_json toJson(const FullMap& map, const TermCatalog& catalog,
                               const std::vector<Compression>& compressions,
                               const StageTimer& times);
 
-/** One line a solution; the first line names the columns. */
-std::string toCsv(const TermCatalog& catalog, const std::vector<Compression>& compressions);
+/** One line a solution with what its report has, but for lists and weights; the first line names
+ * the columns by their places in the report: /tree/knownLeaves. */
+std::string toCsv(const nlohmann::ordered_json& report);
 
 }  // namespace semantic_map_compress

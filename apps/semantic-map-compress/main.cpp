@@ -85,52 +85,37 @@ std::vector<AbstractionOptions> solutionsOf(const Cli& cli,
                                         classes);
 }
 
-/** Puts everything about one solution into the folder. */
-class SolutionWriter {
- public:
-  SolutionWriter(Compressor& compressor, const Target& target, const OutputFolder& output,
-                 MapSheet& sheet)
-      : m_compressor(compressor), m_target(target), m_output(output), m_sheet(sheet) {}
-
-  Compression write(const AbstractionOptions& solution) const {
-    Compression c;
-    c.solution = solution;
-    c.alpha = m_compressor.alphaFor(solution, m_target);
-    c.times.add("chooseAlpha");
-    m_compressor.weigh(solution, c.alpha);
-    c.times.add("weigh");
-    c.measures = m_compressor.abstraction().measures();
-    m_compressor.addKept(c.measures, c.kept);
-    c.chosen = curvePoint(m_compressor, c.measures);
-    c.times.add("measure");
-    Compressed compressed(m_compressor);
-    c.times.add("extract");
-    const fs::path file = m_output.staged(solution.name + ".semantic");
-    saveTree(compressed.map(), file.string());
-    c.bytes = fs::file_size(file);
-    c.times.add("save");
-    draw(compressed.map(), c);
-    c.times.add("draw");
-    c.curve = alphaCurve(m_compressor);
-    c.times.add("curve");
-    return c;
-  }
-
- private:
-  void draw(const SemanticOcTree& compressed, const Compression& c) const {
-    map_pictures::PictureStyle style;
-    style.title = c.solution.name;
-    map_pictures::savePicture(renderTopView(compressed, style),
-                              m_output.staged(c.solution.name + ".top.png"));
-    m_sheet.add(compressed, c.solution.name + ": " +
-                                std::to_string(c.measures.compressed.numKnownLeaves) + " leaves");
-  }
-
-  Compressor& m_compressor;
-  const Target& m_target;
-  const OutputFolder& m_output;
-  MapSheet& m_sheet;
-};
+/** Puts everything about one solution into the folder, and onto the sheet. */
+Compression writeSolution(const AbstractionOptions& solution, const Target& target,
+                          Compressor& compressor, const OutputFolder& output, MapSheet& sheet) {
+  Compression c;
+  c.solution = solution;
+  c.alpha = compressor.alphaFor(solution, target);
+  c.times.add("chooseAlpha");
+  compressor.weigh(solution, c.alpha);
+  c.times.add("weigh");
+  c.measures = compressor.abstraction().measures();
+  compressor.addKept(c.measures, c.kept);
+  c.chosen = curvePoint(compressor, c.measures);
+  c.times.add("measure");
+  const auto compressed = compressor.compressed();
+  c.times.add("extract");
+  const fs::path file = output.staged(solution.name + ".semantic");
+  saveTree(compressed->tree(), file.string());
+  c.bytes = fs::file_size(file);
+  c.times.add("save");
+  map_pictures::PictureStyle style;
+  style.title = solution.name;
+  map_pictures::savePicture(renderTopView(compressed->tree(), style),
+                            output.staged(solution.name + ".top.png"));
+  sheet.add(
+      compressed->tree(),
+      solution.name + ": " + std::to_string(c.measures.compressed.numKnownLeaves) + " leaves");
+  c.times.add("draw");
+  c.curve = alphaCurve(compressor);
+  c.times.add("curve");
+  return c;
+}
 
 /** The classes that did not fit into the first batch. */
 void measureOtherBatches(Compressor& compressor, std::vector<Compression>& compressions,
@@ -186,13 +171,12 @@ int run(const Cli& cli) {
   times.add("load");
   const TermCatalog catalog(map.classes(), solutions);
   OutputFolder output(cli.output);
-  CompressedPlace place;
-  if (stored->folder()) place.tiles = {memory, stored->folder()->contents().tileSize};
-  place.scratch = output.staged("tiles");
+  std::optional<semantic_octree::MapFolderOptions> tiles;
+  if (stored->folder()) tiles = {memory, stored->folder()->contents().tileSize};
   std::optional<Progress> progress(std::in_place, "Compressing",
                                    solutions.size() + 2 * catalog.numBatches());
   progress->update(0, "information of the classes");
-  Compressor compressor(map, catalog, solutions.front(), place);
+  Compressor compressor(map, catalog, solutions.front(), tiles, output.staged("tiles"));
   times.add("computeInformation");
 
   MapSheet sheet(1 + solutions.size());
@@ -200,8 +184,7 @@ int run(const Cli& cli) {
   std::vector<Compression> compressions;
   for (const AbstractionOptions& solution : solutions) {
     progress->update(2 + compressions.size(), solution.name);
-    compressions.push_back(
-        SolutionWriter(compressor, targetOf(cli), output, sheet).write(solution));
+    compressions.push_back(writeSolution(solution, targetOf(cli), compressor, output, sheet));
   }
   times.add("solutions");
   measureOtherBatches(compressor, compressions, *progress);
@@ -211,8 +194,9 @@ int run(const Cli& cli) {
   map_pictures::savePicture(sheet.picture(), output.staged("maps.png"));
   const std::string problem = drawFigures(full, compressions, catalog, output);
   times.add("figures");
-  strict_files::writeText(output.staged("report.csv"), toCsv(catalog, compressions));
-  writeJson(output.staged("report.json"), toJson(full, catalog, compressions, times));
+  const nlohmann::ordered_json report = toJson(full, catalog, compressions, times);
+  strict_files::writeText(output.staged("report.csv"), toCsv(report));
+  writeJson(output.staged("report.json"), report);
   output.commit(fileNames(solutions));
   printSummary(compressions);
   if (!problem.empty()) throw std::runtime_error(problem);
