@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 using semantic_octree::MapFolder;
 using semantic_octree::SemanticOcTree;
 using semantic_octree::StoredMap;
-using TileOrder = inputs::TileProgress::Order;
 
 struct Cli {
   fs::path in, out, like, halfLives;
@@ -65,10 +64,6 @@ std::unique_ptr<StoredMap> load(const Cli& cli) {
   return std::make_unique<StoredMap>(semantic_map::importOctomapFile(cli.in, &like));
 }
 
-Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
-  return {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])};
-}
-
 /** How often a voxel's edge is doubled to become the edge that an option names. */
 int levelsTo(double edge, double voxelSize, int highest, const std::string& option) {
   const double levels = std::log2(edge / voxelSize);
@@ -102,13 +97,12 @@ int run(const Cli& cli) {
   cli.tiles ? cli.outputs.checkFolder(cli.out, {MapFolder::kIndexFile})
             : cli.outputs.check({cli.out});
   const auto stored = load(cli);
-  const inputs::TileProgress progress({stored.get()}, "Editing",
-                                      cli.pose ? TileOrder::Any : TileOrder::DepthFirst);
+  const inputs::TileProgress progress({stored.get()}, "Editing");
   std::optional<SemanticOcTree> edited;
   const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored->tree(); };
   try {
     if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));
-    if (cli.box) edited = cropped(map(), boxOf(*cli.box));
+    if (cli.box) edited = cropped(map(), poses::boxOfNumbers(*cli.box));
   } catch (const std::logic_error& e) {
     throw std::runtime_error(cli.in.string() + ": " + e.what());
   }

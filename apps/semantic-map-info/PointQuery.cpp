@@ -1,13 +1,8 @@
 #include "PointQuery.h"
 
-#include <semantic_octree/Keys.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <iomanip>
 #include <sstream>
-#include <utility>
 
 namespace semantic_map_info {
 
@@ -47,27 +42,6 @@ ordered_json distributionAt(const SemanticOcTree& map, const Point& p) {
   return json;
 }
 
-/** The point's number in the octree's order: bits of x, y and z by turns. */
-std::uint64_t placeInTree(const SemanticOcTree& map, const Point& p) {
-  octomap::OcTreeKey key;
-  if (!map.coordToKeyChecked(p[0], p[1], p[2], key)) return 0;
-  std::uint64_t place = 0;
-  for (int bit = semantic_octree::kTreeDepth - 1; bit >= 0; --bit)
-    for (int axis = 0; axis < 3; ++axis) place = place << 1 | (key[axis] >> bit & 1);
-  return place;
-}
-
-/** Numbers of points, so that of a folder of tiles each tile comes in once. */
-std::vector<std::size_t> inOrderOfTheTree(const SemanticOcTree& map,
-                                          const std::vector<Point>& points) {
-  std::vector<std::pair<std::uint64_t, std::size_t>> places;
-  for (const Point& p : points) places.emplace_back(placeInTree(map, p), places.size());
-  std::sort(places.begin(), places.end());
-  std::vector<std::size_t> order;
-  for (const auto& place : places) order.push_back(place.second);
-  return order;
-}
-
 ordered_json answerAt(const SemanticOcTree& map, const Point& p, bool distribution) {
   const CellState state = map.query(p[0], p[1], p[2]);
   const bool seen = state.likeliestClass != kNoClass;
@@ -87,11 +61,9 @@ ordered_json answerAt(const SemanticOcTree& map, const Point& p, bool distributi
 
 ordered_json answersAt(const SemanticOcTree& map, const std::vector<strict_files::TextLine>& lines,
                        bool distribution) {
-  std::vector<Point> points;
-  for (const strict_files::TextLine& line : lines) points.push_back(numbersOf(line, 3));
-  ordered_json answers(points.size(), nullptr);
-  for (const std::size_t i : inOrderOfTheTree(map, points))
-    answers[i] = answerAt(map, points[i], distribution);
+  ordered_json answers = ordered_json::array();
+  for (const strict_files::TextLine& line : lines)
+    answers.push_back(answerAt(map, numbersOf(line, 3), distribution));
   return answers;
 }
 

@@ -13,6 +13,7 @@
 #include "Application.h"
 #include "MapPoses.h"
 #include "inputs/Inputs.h"
+#include "poses/Poses.h"
 
 namespace semantic_map_merge {
 namespace {
@@ -51,10 +52,6 @@ struct Cli {
   }
 };
 
-SemanticOcTree inBox(const SemanticOcTree& map, const std::array<double, 6>& v) {
-  return cropped(map, {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])});
-}
-
 /** Adds the map of a file, moved if it has a pose; with a box, what is in it. */
 void load(const Cli& cli, const fs::path& file, const std::map<fs::path, Eigen::Isometry3d>& poses,
           std::deque<StoredMap>& maps) {
@@ -64,11 +61,10 @@ void load(const Cli& cli, const fs::path& file, const std::map<fs::path, Eigen::
     inputs::appendMap(maps, file, memory);
   } else {
     const auto stored = inputs::openMap(file, memory);
-    const inputs::TileProgress progress({stored.get()}, "Reading " + file.filename().string(),
-                                        inputs::TileProgress::Order::Any);
+    const inputs::TileProgress progress({stored.get()}, "Reading " + file.filename().string());
     std::optional<SemanticOcTree> map;
     if (pose != poses.end()) map = moved(stored->tree(), pose->second);
-    if (cli.box) map = inBox(map ? *map : stored->tree(), *cli.box);
+    if (cli.box) map = cropped(map ? *map : stored->tree(), poses::boxOfNumbers(*cli.box));
     maps.emplace_back(*std::move(map));
   }
   notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";

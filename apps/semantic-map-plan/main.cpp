@@ -117,7 +117,7 @@ std::optional<Corridor> corridorOf(const Cli& cli, StoredMap& stored,
   CorridorTask task{cli.start, cli.goal, cli.startZ, cli.goalZ};
   task.width = cli.corridor.value_or(stored.folder() ? task.width : kAll);
   if (std::isinf(task.width)) return std::nullopt;
-  const TileProgress progress({&stored}, "Looking for a corridor", TileProgress::Order::Any);
+  const TileProgress progress({&stored}, "Looking for a corridor");
   return findCorridor(stored.tree(), order, cli.planner, task);
 }
 
@@ -155,7 +155,7 @@ int run(Cli& cli) {
                                                   cli.weights, cli.solution, map.classes()));
   }
   const double abstraction = watch.lap();
-  progress.emplace(std::vector{stored.get()}, "Finding the ground", TileProgress::Order::Any);
+  progress.emplace(std::vector{stored.get()}, "Finding the ground");
   SemanticPlanner planner(map, order, cli.planner, corridor);
   const double ground = watch.lap();
   progress.reset();

@@ -91,15 +91,11 @@ TEST_F(SemanticMapEdit, tilesAreAFolderWithTheMapInIt) {
 }
 
 TEST_F(SemanticMapEdit, tilesAreNotWrittenOverUnlessThatIsWanted) {
-  Words all = {"--tiles", "102.4"};
-  ASSERT_EQ(edit("map.semantic", "tiles", all).status, 0);
+  const Words all = {"--tiles", "102.4"}, box = {"--box", "0", "0", "0", "1", "1", "1"};
+  succeeded(edit("map.semantic", "tiles", all));
   expectRefusal(edit("map.semantic", "tiles", all), {"tiles/index.yaml", "--overwrite"});
-  all.insert(all.end(), {"--box", "0", "0", "0", "1", "1", "1"});
-  ASSERT_EQ(edit("map.semantic", "corner.semantic", {all.begin() + 2, all.end()}).status, 0);
-  all.push_back("-f");
-  ASSERT_EQ(edit("map.semantic", "tiles", all).status, 0);
-  EXPECT_TRUE(semantic_octree::loadMap(path("tiles")) ==
-              semantic_octree::loadMap(path("corner.semantic")));
+  succeeded(edit("map.semantic", "tiles", joined(all, box, {"-f"})));
+  EXPECT_TRUE(semantic_octree::loadMap(path("tiles")) == edited(box));
 }
 
 TEST_F(SemanticMapEdit, colorsOfOurOwnOctreesBecomeClassesAgain) {
@@ -137,34 +133,17 @@ TEST_F(SemanticMapEdit, octomapsFilesBecomeOccupancy) {
   EXPECT_EQ(like.filterParameters(), map.filterParameters());
 }
 
-TEST_F(SemanticMapEdit, filesThatAreNoMapsOfOctomapsAreRefused) {
-  ASSERT_EQ(exportTo({"whole.ot", "whole.bt"}).status, 0);
-  const std::string ot = folder.read("whole.ot"), bt = folder.read("whole.bt");
-  const auto refuse = [&](const std::string& name, const std::string& bytes) {
-    folder.write(name, bytes);
-    expectRefusal(edit(name, "out.semantic"), {name});
-  };
-  for (const std::string& bytes :
-       {std::string(), std::string("no map"), ot.substr(0, 60), ot.substr(0, ot.size() / 2),
-        ot.substr(0, ot.size() - 1), ot + "x", bt.substr(0, bt.size() - 1),
-        bt + std::string(400, '\xff'),
-        bt.substr(0, bt.size() / 2) + std::string(bt.size(), '\xff')})
-    refuse("bad.ot", bytes);
-  const std::size_t type = ot.find("ColorOcTree");
-  refuse("bad.ot", std::string(ot).replace(type, 11, "OcTreeStamp"));
-  refuse("bad.ot", std::string(ot).replace(ot.find("road"), 4, "post"));
-  expectRefusal(edit("none.bt", "out.semantic"), {"none.bt"});
-}
-
 TEST_F(SemanticMapEdit, badInputIsRefused) {
-  expectRefusal(edit("map.semantic", "out.semantic", {"--resolution", "0.5"}), {"0.5", "0.2"});
-  expectRefusal(edit("map.semantic", "out.semantic", {"--resolution", "0.1"}), {"0.1", "0.2"});
-  expectRefusal(edit("map.semantic", "out", {"--tiles", "50"}), {"--tiles", "50", "0.2"});
-  expectRefusal(edit("map.semantic", "out", {"--tiles", "0.1"}), {"--tiles", "0.1", "0.2"});
-  expectRefusal(edit("map.semantic", "out.semantic", {"--box", "1", "0", "0", "0", "1", "1"}),
-                {"map.semantic: ", "the box from 1,0,0 to 0,1,1 m is empty"});
-  expectRefusal(edit("map.semantic", "out.semantic", {"--like", path("map.semantic")}), {"--like"});
-  expectRefusal(edit("none.semantic", "out.semantic"), {"none.semantic"});
+  for (const auto& [options, parts] : std::vector<std::pair<Words, Words>>{
+           {{"--resolution", "0.5"}, {"0.5", "0.2"}},
+           {{"--resolution", "0.1"}, {"0.1", "0.2"}},
+           {{"--tiles", "50"}, {"--tiles", "50", "0.2"}},
+           {{"--box", "1,0,0,0,1,1"}, {"map.semantic: ", "the box from 1,0,0 to 0,1,1 m is empty"}},
+           {{"--like", path("map.semantic")}, {"--like"}}})
+    expectRefusal(edit("map.semantic", "out.semantic", options), parts);
+  folder.write("bad.ot", "no map");
+  for (const char* name : {"none.semantic", "none.bt", "bad.ot"})
+    expectRefusal(edit(name, "out.semantic"), {name});
   expectRefusal(edit("map.semantic", "no/folder.semantic"), {"folder.semantic"});
   EXPECT_FALSE(std::filesystem::exists(folder / "out.semantic"));
 }
@@ -241,13 +220,13 @@ TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {
 }
 
 TEST_F(SemanticMapMerge, posesThatMakeNoSenseAreRefusedByLine) {
-  const auto refuse = [&](const std::string& line, const Words& parts) {
+  for (const auto& [line, part] : std::vector<std::pair<std::string, std::string>>{
+           {"scan0.semantic 1 2 3", "yaw pitch roll"},
+           {"scan0.semantic 1 2 3 4 5 6 7", "yaw pitch roll"},
+           {"scan0.semantic 1 2 x 4 5 6", "yaw pitch roll"},
+           {"other.semantic 1 2 3 4 5 6", "other.semantic"}}) {
     folder.write("poses.txt", "# poses\n" + line + "\n");
     expectRefusal(merge({name(0), name(1)}, "out.semantic", {"--poses", path("poses.txt")}),
-                  joined({"poses.txt:2"}, parts));
-  };
-  refuse("scan0.semantic 1 2 3", {"yaw pitch roll"});
-  refuse("scan0.semantic 1 2 3 4 5 6 7", {"yaw pitch roll"});
-  refuse("scan0.semantic 1 2 x 4 5 6", {"yaw pitch roll"});
-  refuse("other.semantic 1 2 3 4 5 6", {"other.semantic", "none"});
+                  {"poses.txt:2", part});
+  }
 }

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <numeric>
-#include <set>
 
 namespace inputs {
 
@@ -105,35 +103,34 @@ SemanticOcTree loadMap(const fs::path& path) {
   return semantic_octree::loadMap(path);
 }
 
-TileProgress::TileProgress(const std::vector<StoredMap*>& maps, std::string task, Order order)
-    : m_task(std::move(task)), m_order(order), m_done(maps.size()) {
+namespace {
+
+std::size_t tilesOf(const std::vector<StoredMap*>& maps) {
+  std::size_t tiles = 0;
+  for (StoredMap* map : maps)
+    if (const MapFolder* folder = map->folder()) tiles += folder->contents().tiles;
+  return tiles;
+}
+
+}  // namespace
+
+TileProgress::TileProgress(const std::vector<StoredMap*>& maps, const std::string& task)
+    : m_progress(task, tilesOf(maps)) {
+  const std::string ofAll = " of " + std::to_string(tilesOf(maps)) + " tiles";
   for (StoredMap* map : maps) {
     MapFolder* const folder = map->folder();
     if (!folder) continue;
-    std::size_t& done = m_done[m_folders.size()];
-    folder->onTile([this, &done](std::size_t number) { tell(done, number); });
     m_folders.push_back(folder);
-    m_total += folder->contents().tiles;
+    folder->onTile([this, folder, ofAll](std::size_t number) {  // they may come again
+      m_read.emplace(folder, number);
+      m_progress.update(m_read.size(), std::to_string(m_read.size()) + ofAll);
+    });
   }
-  if (!m_folders.empty()) return;
-  m_progress.emplace(m_task, 0);  // in memory: how long it takes, nobody knows
-  m_progress->update(0, "all of the map");
+  if (m_folders.empty()) m_progress.update(0, "all of the map");
 }
 
 TileProgress::~TileProgress() {
   for (MapFolder* folder : m_folders) folder->onTile({});
-}
-
-/** Who goes through the maps once more begins anew: how long that takes is another matter. */
-void TileProgress::tell(std::size_t& tilesOfFolder, std::size_t number) {
-  const bool inOrder = m_order == Order::DepthFirst;
-  const bool isAnew = inOrder && number < tilesOfFolder;
-  if (!m_progress || isAnew) m_progress.emplace(m_task, inOrder ? m_total : 0);
-  if (isAnew) m_done.assign(m_done.size(), 0);
-  tilesOfFolder = inOrder ? number + 1 : tilesOfFolder + 1;
-  const std::size_t done = std::accumulate(m_done.begin(), m_done.end(), std::size_t{0});
-  m_progress->update(
-      done, std::to_string(done) + (inOrder ? " of " + std::to_string(m_total) : "") + " tiles");
 }
 
 void checkOnce(const std::vector<fs::path>& files) {

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Terminal.h"
@@ -41,30 +43,20 @@ void appendMap(Maps& maps, const std::filesystem::path& path, double memory) {
 /** All of a map. \throw std::runtime_error as openMap() */
 semantic_octree::SemanticOcTree loadMap(const std::filesystem::path& path);
 
-/** While it lives, it says how far what goes through folders of tiles is. Maps of single files are
- * not counted. */
+/** While it lives, it says how many tiles of folders were read. How far maps of single files are,
+ * nobody knows. */
 class TileProgress {
  public:
-  enum class Order {
-    DepthFirst,
-    Any  ///< which tiles come, and how often, nobody knows
-  };
   /** \param maps gone through together \param task "Exporting" */
-  TileProgress(const std::vector<semantic_octree::StoredMap*>& maps, std::string task,
-               Order order = Order::DepthFirst);
+  TileProgress(const std::vector<semantic_octree::StoredMap*>& maps, const std::string& task);
   ~TileProgress();
   TileProgress(const TileProgress&) = delete;
   TileProgress& operator=(const TileProgress&) = delete;
 
  private:
-  void tell(std::size_t& tilesOfFolder, std::size_t number);
-
-  std::string m_task;
-  Order m_order;
   std::vector<semantic_octree::MapFolder*> m_folders;
-  std::vector<std::size_t> m_done;  ///< tiles of each folder
-  std::size_t m_total = 0;
-  std::optional<Progress> m_progress;
+  std::set<std::pair<const semantic_octree::MapFolder*, std::size_t>> m_read;
+  Progress m_progress;
 };
 
 /** \throw std::runtime_error naming the first that is given twice: it would count twice. */
