@@ -95,7 +95,7 @@ void plotRetainedBars(std::ostream& out, const std::vector<Compression>& compres
   out << "plot ";
   for (std::size_t s = 0; s < compressions.size(); ++s)
     out << (s ? ", " : "") << "$retained" << s << " using 1:2:(" << width
-        << ") with boxes fs solid 1 noborder lc rgb '" << colorOf(s) << "' title "
+        << ") with boxes fs solid 1 noborder" << styleOf(s) << " title "
         << gnuplotText(compressions[s].solution.name);
   out << '\n';
 }
@@ -114,7 +114,7 @@ void plotLeafRatios(std::ostream& out, const std::vector<Compression>& compressi
   out << "set yrange [0:" << std::max(1e-3, 1.3 * highest) << "]\nplot ";
   for (std::size_t s = 0; s < compressions.size(); ++s)
     out << (s ? ", " : "") << "$leaves" << s << " using 1:2:(0.5) with boxes fs solid 1 noborder"
-        << " lc rgb '" << colorOf(s) << "' notitle, $leaves" << s
+        << styleOf(s) << " notitle, $leaves" << s
         << " using 1:2:3 with labels offset 0,0.8 notitle";
   out << '\n';
 }
@@ -158,10 +158,9 @@ std::string plotCurve(std::ostream& out, const Compression& c, Share share, std:
   for (const CurvePoint& p : c.curve) out << p.leaves << ' ' << 100 * *(p.*share) << '\n';
   out << "EOD\n" << name << "chosen << EOD\n";
   out << c.chosen.leaves << ' ' << 100 * *(c.chosen.*share) << "\nEOD\n";
-  const std::string color = std::string(" lc rgb '") + colorOf(solution) + "'";
-  return name + " with lines lw " + (relevant ? "2.5" : "1") + " dt " + dashOf(solution) + color +
-         " title " + gnuplotText(c.solution.name + (relevant ? "" : ", irrelevant")) + ", " + name +
-         "chosen with points pt 7 ps 1.4" + color + " notitle, ";
+  return name + " with lines" + styleOf(solution) + " lw " + (relevant ? "2.5" : "1") + " title " +
+         gnuplotText(c.solution.name + (relevant ? "" : ", irrelevant")) + ", " + name +
+         "chosen with points" + styleOf(solution) + " pt 7 ps 1.4 notitle, ";
 }
 
 }  // namespace
