@@ -6,6 +6,7 @@
 #include <synthetic_world/Scene.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <regex>
 
 #include "SynthRawlogRun.h"
