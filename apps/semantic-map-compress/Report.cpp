@@ -93,8 +93,8 @@ void plotRetainedBars(std::ostream& out, const std::vector<Compression>& compres
   }
   out << "EOD\nset style histogram clustered gap 0.5\nset style fill solid 1 noborder\nplot ";
   for (std::size_t s = 0; s < compressions.size(); ++s)
-    out << (s ? ", " : "") << "$retained using " << s + 1 << " with histograms lc rgb '"
-        << colorOf(s) << "' title " << gnuplotText(compressions[s].solution.name);
+    out << (s ? ", " : "") << "$retained using " << s + 1 << " with histograms" << styleOf(s)
+        << " title " << gnuplotText(compressions[s].solution.name);
   out << '\n';
 }
 
@@ -104,12 +104,12 @@ void plotLeafRatios(std::ostream& out, const std::vector<Compression>& compressi
   for (std::size_t s = 0; s < compressions.size(); ++s) {
     const double percent = 100 * compressions[s].leafRatio();
     highest = std::max(highest, percent);
-    out << s << ' ' << percent << ' ' << std::stoul(colorOf(s) + 1, nullptr, 16)
+    out << s << ' ' << percent << ' ' << s + 1
         << mrpt::format(" \"%.3g %%  (%zu)\"\n", percent,
                         compressions[s].measures.compressed.numKnownLeaves);
   }
   out << "EOD\nset yrange [0:" << std::max(1e-3, 1.3 * highest) << "]\n"
-      << "plot $leaves using 1:2:(0.5):3 with boxes fs solid 1 noborder lc rgb variable notitle, "
+      << "plot $leaves using 1:2:(0.5):3 with boxes fs solid 1 noborder lc variable notitle, "
          "$leaves using 1:2:4 with labels offset 0,0.8 notitle\n";
 }
 
@@ -152,10 +152,9 @@ std::string plotCurve(std::ostream& out, const Compression& c, Share share, std:
   for (const CurvePoint& p : c.curve) out << p.leaves << ' ' << 100 * *(p.*share) << '\n';
   out << "EOD\n" << name << "chosen << EOD\n";
   out << c.chosen.leaves << ' ' << 100 * *(c.chosen.*share) << "\nEOD\n";
-  const std::string color = std::string(" lc rgb '") + colorOf(solution) + "'";
-  return name + " with lines lw " + (relevant ? "2.5" : "1") + " dt " + dashOf(solution) + color +
-         " title " + gnuplotText(c.solution.name + (relevant ? "" : ", irrelevant")) + ", " + name +
-         "chosen with points pt 7 ps 1.4" + color + " notitle, ";
+  return name + " with lines" + styleOf(solution) + " lw " + (relevant ? "2.5" : "1") + " title " +
+         gnuplotText(c.solution.name + (relevant ? "" : ", irrelevant")) + ", " + name +
+         "chosen with points" + styleOf(solution) + " pt 7 ps 1.4 notitle, ";
 }
 
 }  // namespace

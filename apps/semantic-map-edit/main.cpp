@@ -64,6 +64,10 @@ std::unique_ptr<StoredMap> load(const Cli& cli) {
   return std::make_unique<StoredMap>(semantic_map::importOctomapFile(cli.in, &like));
 }
 
+Eigen::AlignedBox3d boxOf(const std::array<double, 6>& v) {
+  return {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])};
+}
+
 /** How often a voxel's edge is doubled to become the edge that an option names. */
 int levelsTo(double edge, double voxelSize, int highest, const std::string& option) {
   const double levels = std::log2(edge / voxelSize);
@@ -102,7 +106,7 @@ int run(const Cli& cli) {
   const auto map = [&]() -> const SemanticOcTree& { return edited ? *edited : stored->tree(); };
   try {
     if (cli.pose) edited = moved(map(), poses::poseOfNumbers(*cli.pose));
-    if (cli.box) edited = cropped(map(), poses::boxOfNumbers(*cli.box));
+    if (cli.box) edited = cropped(map(), boxOf(*cli.box));
   } catch (const std::logic_error& e) {
     throw std::runtime_error(cli.in.string() + ": " + e.what());
   }

@@ -54,8 +54,8 @@ std::string linesOf(const std::vector<NamedEvaluation>& maps, const std::string&
                     bool titled) {
   std::string plots;
   for (std::size_t i = 0; i < maps.size(); ++i)
-    plots += ", $map" + std::to_string(i) + " using " + columns + " with linespoints lw 2 ps 0.8 " +
-             styleOf(i) + ' ' + (titled ? "title " + gnuplotText(maps[i].name) : "notitle");
+    plots += ", $map" + std::to_string(i) + " using " + columns + " with linespoints" + styleOf(i) +
+             " lw 2 ps 0.8 " + (titled ? "title " + gnuplotText(maps[i].name) : "notitle");
   return plots;
 }
 

@@ -1,4 +1,4 @@
-// Adds up semantic octree maps, each at its pose.
+// Adds up semantic octree maps.
 #include <map_folders/MapFolder.h>
 #include <map_operations/MapOperations.h>
 #include <semantic_octree/TreeFile.h>
@@ -11,9 +11,7 @@
 #include <optional>
 
 #include "Application.h"
-#include "MapPoses.h"
 #include "inputs/Inputs.h"
-#include "poses/Poses.h"
 
 namespace semantic_map_merge {
 namespace {
@@ -25,7 +23,7 @@ using semantic_octree::StoredMap;
 
 struct Cli {
   std::vector<fs::path> maps;
-  fs::path out, poses;
+  fs::path out;
   bool partial = false;
   std::optional<std::array<double, 6>> box;
   std::optional<double> tiles;
@@ -36,7 +34,6 @@ struct Cli {
     app.add_option("MAP", maps, std::string("Maps: ") + inputs::kMap)->required();
     outputs.add(app, out, "FILE|FOLDER", "The sum to write (.semantic); with --tiles, its folder")
         ->required();
-    app.add_option("--poses", poses, "File of lines `MAP x y z yaw pitch roll` (m, degrees)");
     app.add_flag("--partial", partial,
                  "The sum is a part, to be added to others: do not clamp its probabilities yet");
     app.add_option("--box", box,
@@ -52,20 +49,18 @@ struct Cli {
   }
 };
 
-/** Adds the map of a file, moved if it has a pose; with a box, what is in it. */
-void load(const Cli& cli, const fs::path& file, const std::map<fs::path, Eigen::Isometry3d>& poses,
-          std::deque<StoredMap>& maps) {
-  const auto pose = poses.find(file);
-  const double memory = cli.memoryOfMap();
-  if (pose == poses.end() && !cli.box) {
-    inputs::appendMap(maps, file, memory);
-  } else {
-    const auto stored = inputs::openMap(file, memory);
+SemanticOcTree inBox(const SemanticOcTree& map, const std::array<double, 6>& v) {
+  return cropped(map, {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])});
+}
+
+/** Adds the map of a file; with a box, what is in it. */
+void load(const Cli& cli, const fs::path& file, std::deque<StoredMap>& maps) {
+  if (cli.box) {
+    const auto stored = inputs::openMap(file, cli.memoryOfMap());
     const inputs::TileProgress progress({stored.get()}, "Reading " + file.filename().string());
-    std::optional<SemanticOcTree> map;
-    if (pose != poses.end()) map = moved(stored->tree(), pose->second);
-    if (cli.box) map = cropped(map ? *map : stored->tree(), poses::boxOfNumbers(*cli.box));
-    maps.emplace_back(*std::move(map));
+    maps.emplace_back(inBox(stored->tree(), *cli.box));
+  } else {
+    inputs::appendMap(maps, file, cli.memoryOfMap());
   }
   notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";
 }
@@ -125,11 +120,9 @@ int run(const Cli& cli) {
   inputs::checkOnce(cli.maps);
   cli.tiles ? cli.outputs.checkFolder(cli.out, {semantic_octree::MapFolder::kIndexFile})
             : cli.outputs.check({cli.out});
-  std::map<fs::path, Eigen::Isometry3d> poses;
-  if (!cli.poses.empty()) poses = readMapPoses(cli.poses, cli.maps);
   std::deque<StoredMap> maps;
   for (const fs::path& file : cli.maps) {
-    load(cli, file, poses, maps);
+    load(cli, file, maps);
     checkAlike(cli.maps.front(), maps.front().tree(), file, maps.back().tree());
   }
   writeSum(cli, maps);
@@ -140,7 +133,7 @@ int run(const Cli& cli) {
 }  // namespace semantic_map_merge
 
 int main(int argc, char** argv) {
-  CLI::App app("Adds up semantic octree maps, each at its pose");
+  CLI::App app("Adds up semantic octree maps");
   const semantic_map_merge::Cli cli(app);
   return runApplication(app, argc, argv, [&] { return semantic_map_merge::run(cli); });
 }

@@ -50,7 +50,7 @@ struct Cli {
   double cameraPitch = 8;  // degrees down
   synthetic_world::LidarOptions lidar;
   double turnTime = 0;  // s that the LiDAR turns for a scan
-  synthetic_world::SensorNoise noise{0.01, 0, 0};
+  synthetic_world::SensorNoise noise{0.01, 0};
   double labelNoise = 0;  // share of labels, of other kinds than points
   label_noise::LabelNoise::Kind labelNoiseKind = label_noise::LabelNoise::Kind::Points;
 
@@ -102,7 +102,6 @@ OptionList sensorOptions(Cli& cli) {
            "share of the LiDAR's beams on windows, cars, water and signs that are reflected, and "
            "return from something else");
   cli.noise.describe(list);
-  list.add("dropout", cli.noise.dropout, "", between(0, 1), "share of rays without a return");
   return list;
 }
 
@@ -203,22 +202,22 @@ std::filesystem::path beside(std::filesystem::path rawlog, const char* extension
   return rawlog.replace_extension(extension);
 }
 
-std::vector<synthetic_world::Walker> walkersOn(const synthetic_world::Curve& route, int people) {
-  constexpr double kRight = 4, kLeft = 6;  // m
-  std::vector<synthetic_world::Walker> walkers;
+/** People who walk to and fro across the route, each from 4 m on its right to 6 m on its left. */
+void walk(int people, double time, synthetic_world::Scene& scene) {
+  constexpr double kRight = 4, kWay = 10, kSpeed = 1.2, kStep = 0.7;  // m, m/s
+  const double walked = kSpeed * time, phase = std::fmod(walked, 2 * kWay);
+  const bool isBack = phase > kWay;
+  synthetic_world::Solids all;
   for (int i = 0; i < people; ++i) {
-    const double s = (i + 0.5) * route.length() / people;
-    walkers.push_back({route.beside(s, -kRight), route.beside(s, kLeft)});
+    const double s = (i + 0.5) * scene.route.length() / people;
+    const Eigen::Vector2d at = scene.route.beside(s, (isBack ? 2 * kWay - phase : phase) - kRight);
+    const double yaw = scene.route.heading(s) + (isBack ? -M_PI / 2 : M_PI / 2);
+    for (auto& part :
+         synthetic_world::person({at.x(), at.y(), scene.world.groundHeight(at.x(), at.y())}, yaw,
+                                 {188, 62, 52}, walked / kStep))
+      all.push_back(std::move(part));
   }
-  return walkers;
-}
-
-void walk(const std::vector<synthetic_world::Walker>& walkers, double time,
-          synthetic_world::World& world) {
-  synthetic_world::Solids people;
-  for (const auto& walker : walkers)
-    for (auto& solid : walker.at(world, time)) people.push_back(std::move(solid));
-  world.setMovables(std::move(people));
+  scene.world.setMovables(std::move(all));
 }
 
 /** Wrong labels for the pixels of a camera. */
@@ -268,7 +267,6 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
   const synthetic_world::Drive drive(scene, cli.speed, cli.start);
   const int frames =
       cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(drive.duration() * cli.rate));
-  const auto walkers = walkersOn(scene.route, cli.people);
   DriveLog rawlog(cli.output, cli.odometry, cli.odometryNoise, cli.seed);
   std::ostringstream trajectory;
   trajectory << "# time x y z qx qy qz qw (true poses of the robot)\n";
@@ -282,7 +280,7 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
     progress->update(k, std::to_string(k) + " frames");
     const double time = k / cli.rate;
     const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
-    walk(walkers, time, scene.world);
+    walk(cli.people, time, scene);
     rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
                  sense(cli, classes, scene.world, drive, static_cast<std::uint64_t>(k),
                        noise ? &*noise : nullptr));

@@ -184,23 +184,6 @@ TEST_F(SemanticMapMerge, tenMapsGiveOneMapInAnyGroups) {
   EXPECT_EQ(folder.read("d.semantic"), folder.read("sum.semantic"));
 }
 
-TEST_F(SemanticMapMerge, mapsAreAddedWhereTheirPosesPutThem) {
-  saveTree(smallPlace(0, 1), path("here.semantic"));
-  folder.write("poses.txt", "# name x y z yaw pitch roll\n\nscan0.semantic 4 -2 0.4 180 0 0\n");
-  ASSERT_EQ(
-      merge({"here.semantic", name(0)}, "sum.semantic", {"--poses", path("poses.txt")}).status, 0);
-  const SemanticOcTree sum = load("sum.semantic"), one = load(name(0));
-  int looked = 0;
-  for (auto leaf = one.begin_leafs(); leaf != one.end_leafs(); ++leaf) {
-    // 180 degrees about z, by whole voxels.
-    const double x = 4 - leaf.getX(), y = -2 - leaf.getY(), z = 0.4 + leaf.getZ();
-    if (one.query(x, y, z).status != semantic_octree::CellState::Status::Unknown) continue;
-    ASSERT_EQ(sum.query(x, y, z).status, one.query(*leaf).status) << x << " " << y << " " << z;
-    ++looked;
-  }
-  EXPECT_GT(looked, 1000);
-}
-
 TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {
   saveTree(SemanticOcTree(0.1, coloredClasses()), path("fine.semantic"));
   saveTree(SemanticOcTree(0.2, numberedClasses(3)), path("classes.semantic"));
@@ -217,16 +200,4 @@ TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {
   refuse("filter.semantic", "filter parameters");
   expectRefusal(merge({name(0), "none.semantic"}, "out.semantic"), {"none.semantic"});
   expectRefusal(merge({name(0), name(1), name(0)}, "out.semantic"), {name(0) + ": is given twice"});
-}
-
-TEST_F(SemanticMapMerge, posesThatMakeNoSenseAreRefusedByLine) {
-  for (const auto& [line, part] : std::vector<std::pair<std::string, std::string>>{
-           {"scan0.semantic 1 2 3", "yaw pitch roll"},
-           {"scan0.semantic 1 2 3 4 5 6 7", "yaw pitch roll"},
-           {"scan0.semantic 1 2 x 4 5 6", "yaw pitch roll"},
-           {"other.semantic 1 2 3 4 5 6", "other.semantic"}}) {
-    folder.write("poses.txt", "# poses\n" + line + "\n");
-    expectRefusal(merge({name(0), name(1)}, "out.semantic", {"--poses", path("poses.txt")}),
-                  {"poses.txt:2", part});
-  }
 }

@@ -9,7 +9,6 @@
 #include "poses/Poses.h"
 #include "rawlog2semantic-map/Config.h"
 #include "semantic-map-info/PointQuery.h"
-#include "semantic-map-merge/MapPoses.h"
 #include "semantic-map-ros2/Parameters.h"
 #include "semantic-map-view/Track.h"
 #include "simulated_drive/DriveConfig.h"
@@ -139,7 +138,6 @@ void readPointFields(const std::string& bytes) {
 }  // namespace
 
 std::vector<Reader> programReaders() {
-  const auto poses = [](const fs::path& f) { semantic_map_merge::readMapPoses(f, {"a", "b"}); };
   return {
       {"carmen", fromFile("", readCarmen), {}},
       {"pcd", fromFolder({"a.pcd"}, readPcd), {}},
@@ -149,7 +147,6 @@ std::vector<Reader> programReaders() {
                   readKitti),
        {}},
       {"tum", fromFolder({"camera.ini", "groundtruth.txt", "depth.txt", "depth.png"}, readTum), {}},
-      {"map-poses", fromFile("", poses), {}},
       {"queries", askMap, {}},
       {"path", fromFile(".csv", [](const fs::path& f) { semantic_map_view::readTrack(f); }), {}},
       {"mapping-config",

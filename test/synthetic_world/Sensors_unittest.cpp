@@ -96,21 +96,18 @@ CameraFrame wall(const SensorNoise& noise, FrameSeed seed = {}) {
   return renderCamera(small_world::withWall(), T, options, seed);
 }
 
-TEST(SensorNoise, isAsAskedInDepthsLabelsAndDropouts) {
-  const CameraFrame clean = wall({}), noisy = wall({0.05, 0.4, 0.25});
-  double before = 0, n = 0, sum = 0, square = 0;
+TEST(SensorNoise, isAsAskedInDepthsAndLabels) {
+  const CameraFrame clean = wall({}), noisy = wall({0.05, 0.4});
+  double n = 0, sum = 0, square = 0;
   std::vector<double> counts(kClassCount + 1);
   for (std::size_t i = 0; i < clean.depth.pixels.size(); ++i) {
     const float depth = noisy.depth.pixels[i];
     EXPECT_EQ(depth > 0, noisy.labels.pixels[i] != kNoClass);
     if (clean.labels.pixels[i] != kWall) continue;
-    ++before;
-    if (depth == 0) continue;
     ++n, ++counts[noisy.labels.pixels[i]];
     sum += depth - 5, square += (depth - 5) * (depth - 5);
   }
   ASSERT_GT(n, 30000);
-  EXPECT_NEAR(n / before, 0.75, 0.01);
   EXPECT_NEAR(sum / n, 0, 0.001);
   EXPECT_NEAR(std::sqrt(square / n), 0.05, 0.001);
   for (int id = 1; id <= kClassCount; ++id)  // every other class alike
@@ -118,7 +115,7 @@ TEST(SensorNoise, isAsAskedInDepthsLabelsAndDropouts) {
 }
 
 TEST(SensorNoise, isTheSameForTheSameSeedAndFrameOnly) {
-  const SensorNoise noise{0.05, 0.1, 0.1};
+  const SensorNoise noise{0.05, 0.1};
   EXPECT_EQ(wall(noise, {1, 7}).depth.pixels, wall(noise, {1, 7}).depth.pixels);
   EXPECT_NE(wall(noise, {1, 7}).depth.pixels, wall(noise, {1, 8}).depth.pixels);
   EXPECT_NE(wall(noise, {1, 7}).depth.pixels, wall(noise, {2, 7}).depth.pixels);
@@ -127,13 +124,9 @@ TEST(SensorNoise, isTheSameForTheSameSeedAndFrameOnly) {
 TEST(SensorNoise, lidarScattersAlongItsBeams) {
   LidarOptions options;
   options.rings = 1, options.lowest = options.highest = 0, options.columns = 4000;
-  options.noise = {0.03, 0.2, 0.1};
+  options.noise = {0.03, 0.2};
   const Eigen::Isometry3d T(Eigen::Translation3d(0, 0, 2));
   const LabeledCloud cloud = scanLidar(small_world::withWall(), T, options);
-  LabeledCloud clean;
-  options.noise = {};
-  clean = scanLidar(small_world::withWall(), T, options);
-  EXPECT_NEAR(cloud.size() / double(clean.size()), 0.9, 0.03);
   double square = 0;
   int wrong = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -199,7 +192,7 @@ TEST(Camera, colorIsOptionalAndChangesNothingElse) {
   const Scene scene = makeScene("village", 1);
   CameraOptions options;
   options.width = 80, options.height = 60;
-  options.noise = {0.02, 0.1, 0.1};
+  options.noise = {0.02, 0.1};
   Eigen::Isometry3d T = Drive(scene).T_world_robot(5);
   T.translate(V(0, 0, 1.4));
   const CameraFrame with = renderCamera(scene.world, T, options, {3, 4});

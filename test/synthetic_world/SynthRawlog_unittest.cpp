@@ -6,6 +6,7 @@
 #include <synthetic_world/Scene.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <regex>
 
 #include "SynthRawlogRun.h"
@@ -45,6 +46,19 @@ TEST(SynthRawlog, sensorOptionChoosesWhatIsWritten) {
   EXPECT_TRUE(only<CObservationLabeledCloud>(observationsOf(folder / "x.rawlog")).empty());
   ASSERT_EQ(run(folder, "-f -o x.rawlog --sensor lidar" + kSmall).status, 0);
   EXPECT_TRUE(only<CObservation3DRangeScan>(observationsOf(folder / "x.rawlog")).empty());
+}
+
+TEST(SynthRawlog, peopleWalkAcrossTheRoute) {
+  const Folder folder;
+  std::ptrdiff_t seen[2] = {};
+  for (const int many : {0, 1}) {
+    const std::string people = "--people " + std::to_string(100 * many);
+    ASSERT_EQ(run(folder, "-f -o x.rawlog --sensor lidar " + people + kSmall).status, 0);
+    for (const auto& scan : only<CObservationLabeledCloud>(observationsOf(folder / "x.rawlog")))
+      seen[many] += std::count(scan->cloud.classes.begin(), scan->cloud.classes.end(),
+                               synthetic_world::kPerson);
+  }
+  EXPECT_GT(seen[1], seen[0] + 5);
 }
 
 TEST(SynthRawlog, unprojectedDepthsLandOnSurfacesOfTheirLabels) {
@@ -97,7 +111,7 @@ TEST(SynthRawlog, pointsOfATurnThatTakesTimeLandOnSurfacesFromWhereTheRobotIsByT
 
 TEST(SynthRawlog, sameCommandWritesTheSameBytes) {
   const Folder folder;
-  const std::string noise = kSmall + " --label-noise 0.1 --dropout 0.1 ";
+  const std::string noise = kSmall + " --label-noise 0.1 --people 2 ";
   for (const std::string kind : {"", "--odometry"}) {
     ASSERT_EQ(run(folder, "-f -o a.rawlog" + noise + kind).status, 0);
     ASSERT_EQ(run(folder, "-f -o b.rawlog" + noise + kind).status, 0);
@@ -204,7 +218,7 @@ TEST(SynthRawlog, badInputIsRefusedWithItsReason) {
       {"-o x.rawlog --rings 0", "--rings is 0"},
       {"-o x.rawlog --range-noise -1", "--range-noise is -1"},
       {"-o x.rawlog --label-noise 2", "--label-noise is 2"},
-      {"-o x.rawlog --dropout nan", "--dropout is"},
+      {"-o x.rawlog --ghosts nan", "--ghosts is"},
       {"-o x.rawlog --unknown 1", "--unknown"},
       {"-o absent/x.rawlog", "absent/x.rawlog"}};
   for (const auto& [arguments, reason] : cases) {

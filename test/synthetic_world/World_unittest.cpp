@@ -251,22 +251,6 @@ TEST(Scene, badNamesAndHillsAreRefused) {
   EXPECT_EQ(errorOf([] { makeScene("park", 1, 3); }), "scene: hills is 3.000000, 0 to 2 expected");
 }
 
-TEST(Scene, walkerGoesToAndFro) {
-  const World world = small_world::flat();
-  const Walker walker{{0, 0}, {6, 0}, 1.5};
-  const auto isAt = [&](double time, double x) {
-    World now = small_world::flat();
-    now.setMovables(walker.at(world, time));
-    return now.at({x, 0, 1.2}).id == kPerson;
-  };
-  EXPECT_TRUE(isAt(0, 0));
-  EXPECT_TRUE(isAt(2, 3));
-  EXPECT_TRUE(isAt(4, 6));
-  EXPECT_TRUE(isAt(6, 3));
-  EXPECT_FALSE(isAt(6, 0));
-  EXPECT_TRUE(isAt(8, 0));
-}
-
 TEST(Scene, classTableIsThatOfTheConfiguration) {
   EXPECT_EQ(classTable(), semantic_types::loadClassTable(std::string(MSO_SOURCE_DIR) +
                                                          "/config/classes/synthetic.yaml"));

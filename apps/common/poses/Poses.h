@@ -41,11 +41,6 @@ CLI::Option* addPose(CLI::App& app, const std::string& name, mrpt::math::TPose2D
 /** \param v x, y, z (m), yaw, pitch, roll (degrees), as MRPT's CPose3D. */
 Eigen::Isometry3d poseOfNumbers(const std::array<double, 6>& v);
 
-/** \param v the lowest corner, then the highest, m. */
-inline Eigen::AlignedBox3d boxOfNumbers(const std::array<double, 6>& v) {
-  return {Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])};
-}
-
 /** A pose as KITTI's files have it: the twelve numbers of a 3x4 row-major matrix [R|t], m.
  * \throw std::runtime_error naming the line: others, or R is no rotation. */
 Eigen::Isometry3d poseOfMatrix(const strict_files::TextLine& line);

@@ -3,19 +3,14 @@
 #include <semantic_octree/TreeFile.h>
 #include <semantic_octree/store/TreeBuilder.h>
 #include <semantic_octree/store/TreeFormat.h>
-#include <strict_files/Memory.h>
-#include <strict_files/OutputFiles.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <limits>
-#include <optional>
-#include <set>
 #include <stdexcept>
 #include <system_error>
 
-#include "TileIndex.h"
 #include "TilesOnDisk.h"
 
 namespace semantic_octree {
@@ -87,180 +82,151 @@ SemanticOcTree loadLeaves(const fs::path& folder, const TileIndex& index) {
 
 }  // namespace
 
-class MapFolder::Tiles {
- public:
-  Tiles(SemanticOcTree& map, fs::path folder, Access access, const MapFolderOptions& options)
-      : m_map(map), m_folder(std::move(folder)), m_access(access) {
-    options.validate();
-    if (!map.empty() || MapAccess::store(map).tiles())
-      throw std::invalid_argument(
-          "a map for a folder of tiles has to be empty, and in no other one");
-    if (access == Access::Draft && options.draft.empty())
-      throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
-    TileIndex index = open(options);
-    constexpr double kAll = 1e18;  // bytes
-    const auto budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
-    const TilesOnDisk::Place place{
-        m_folder,
-        index.depth,
-        budget,
-        m_unsaved.has_value(),
-        m_unsaved ? m_unsaved->staged("") : m_folder,
-        saves() ? nextGeneration(m_folder, index) : index.generation + 1};
-    tiles = std::make_unique<TilesOnDisk>(map, place, std::move(index));
-    auto empty = std::make_unique<NodeStore>(MapAccess::store(map).stateBytes());
-    const std::int64_t clock = MapAccess::clock(map);
-    try {
-      if (tiles->index().generation > 0 && access != Access::Replace) takeContents();
-      MapAccess::store(map).setTiles(tiles.get());
-      MapAccess::recomputeTileByTile(map);
-    } catch (...) {
-      MapAccess::setStore(map, std::move(empty));
-      MapAccess::setClock(map, clock);
-      throw;
-    }
+MapFolder::Tiles::Tiles(SemanticOcTree& map, fs::path folder, Access access,
+                        const MapFolderOptions& options)
+    : m_map(map), m_folder(std::move(folder)), m_access(access) {
+  options.validate();
+  if (!map.empty() || store().tiles())
+    throw std::invalid_argument("a map for a folder of tiles has to be empty, and in no other one");
+  if (access == Access::Draft && options.draft.empty())
+    throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
+  m_index = open(options);
+  constexpr double kAll = 1e18;  // bytes
+  m_budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
+  m_next = saves() ? nextGeneration(m_folder, m_index) : m_index.generation + 1;
+  auto empty = std::make_unique<NodeStore>(store().stateBytes());
+  const std::int64_t clock = MapAccess::clock(map);
+  try {
+    if (m_index.generation > 0 && access != Access::Replace) takeContents();
+    store().setTiles(this);
+    MapAccess::recomputeTileByTile(map);
+  } catch (...) {
+    MapAccess::setStore(map, std::move(empty));
+    MapAccess::setClock(map, clock);
+    throw;
   }
-  ~Tiles() {
-    if (isOfMap()) MapAccess::store(m_map).setTiles(nullptr);
-    removePlaced();
+}
+
+MapFolder::Tiles::~Tiles() {
+  if (isOfMap()) store().setTiles(nullptr);
+  removePlaced();
+}
+
+void MapFolder::Tiles::save() {
+  if (!isOfMap()) throw std::logic_error("saving a map that is no longer the folder's");
+  if (!saves()) throw std::logic_error("saving a map whose folder was opened to be read");
+  TileIndex index = writeChanged();
+  SemanticOcTree leaves = emptyLike(m_map);
+  TreeBuilder::fill(leaves, LeavesCursor(m_map.numClasses(), index.depth, m_map.root(), 0),
+                    TreeBuilder::Merge::Never);
+  index.leaves = cellsOf(leaves);
+  index.leavesChecksum =
+      saveTreeFile(leaves, m_unsaved->staged(TileIndex::leavesName(index.generation)).string());
+  index.old = oldFor(index);
+  writeIndex(m_unsaved->staged(""), index);
+  place(index);
+  m_index = std::move(index);
+  m_next = m_index.generation + 1;
+  m_placed.clear();
+  removeOld();
+}
+
+TileIndex MapFolder::Tiles::open(const MapFolderOptions& options) {
+  if (m_access == Access::Draft) m_unsaved.emplace(options.draft);
+  if (saves()) {
+    m_unsaved.emplace(m_folder);
+    m_writer = FileLock::tryTo(m_folder / TileIndex::kWriterLock, FileLock::Kind::Exclusive);
+    if (!m_writer) throw std::runtime_error(m_folder.string() + ": " + whyNotLocked());
+    m_unsaved->takeAlong(TileIndex::kWriterLock);
+  } else {
+    m_reader.emplace(m_folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
   }
-
-  void save() {
-    if (!isOfMap()) throw std::logic_error("saving a map that is no longer the folder's");
-    if (!saves()) throw std::logic_error("saving a map whose folder was opened to be read");
-    TileIndex index = tiles->writeChanged();
-    SemanticOcTree leaves = emptyLike(m_map);
-    TreeBuilder::fill(leaves, LeavesCursor(m_map.numClasses(), index.depth, m_map.root(), 0),
-                      TreeBuilder::Merge::Never);
-    index.leaves = cellsOf(leaves);
-    index.leavesChecksum =
-        saveTreeFile(leaves, m_unsaved->staged(TileIndex::leavesName(index.generation)).string());
-    index.old = oldFor(index);
-    writeIndex(m_unsaved->staged(""), index);
-    place(index);
-    tiles->setIndex(std::move(index));
-    m_placed.clear();
-    removeOld();
-  }
-
-  std::uint64_t bytesOnDisk() const {
-    std::uint64_t bytes = 0;
-    for (const std::string& name : tiles->index().files()) {
-      std::error_code missing;
-      const auto size = fs::file_size(m_folder / name, missing);
-      if (!missing) bytes += size;
-    }
-    return bytes;
-  }
-
-  std::unique_ptr<TilesOnDisk> tiles;
-
- private:
-  bool isOfMap() const {
-    return !m_map.isBroken() && MapAccess::store(m_map).tiles() == tiles.get();
-  }
-
-  bool saves() const { return m_access == Access::Write || m_access == Access::Replace; }
-
-  TileIndex open(const MapFolderOptions& options) {
-    if (m_access == Access::Draft) m_unsaved.emplace(options.draft);
-    if (saves()) {
-      m_unsaved.emplace(m_folder);
-      m_writer = FileLock::tryTo(m_folder / TileIndex::kWriterLock, FileLock::Kind::Exclusive);
-      if (!m_writer) throw std::runtime_error(m_folder.string() + ": " + whyNotLocked());
-      m_unsaved->takeAlong(TileIndex::kWriterLock);
-    } else {
-      m_reader.emplace(m_folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
-    }
-    const bool wasSaved = isAt(m_folder);
-    TileIndex index;
-    if (!saves() || (wasSaved && m_access == Access::Write)) {
-      index = readIndex(m_folder);
-      if (m_access == Access::Read && options.wanted) index.keepWanted(options.wanted);
-      return index;
-    }
-    if (wasSaved) {
-      const TileIndex before = readIndex(m_folder);
-      const std::set<std::string> files = before.files();
-      index.generation = before.generation;
-      index.old = before.old;
-      index.old.insert(index.old.end(), files.begin(), files.end());
-    }
-    index.resolution = m_map.getResolution();
-    index.depth = depthOfTiles(options.tileSize, index.resolution);
-    index.classes = namesOf(m_map.classes());
+  const bool wasSaved = isAt(m_folder);
+  TileIndex index;
+  if (!saves() || (wasSaved && m_access == Access::Write)) {
+    index = readIndex(m_folder);
+    if (m_access == Access::Read && options.wanted) index.keepWanted(options.wanted);
     return index;
   }
+  if (wasSaved) {
+    const TileIndex before = readIndex(m_folder);
+    const std::set<std::string> files = before.files();
+    index.generation = before.generation;
+    index.old = before.old;
+    index.old.insert(index.old.end(), files.begin(), files.end());
+  }
+  index.resolution = m_map.getResolution();
+  index.depth = depthOfTiles(options.tileSize, index.resolution);
+  index.classes = namesOf(m_map.classes());
+  return index;
+}
 
-  void takeContents() {
-    SemanticOcTree leaves = loadLeaves(m_folder, tiles->index());
-    leaves.setHalfLives(m_map.classes());
-    MapAccess::setClock(m_map, MapAccess::clock(leaves));
-    if (emptyLike(leaves) != emptyLike(m_map))
-      throw std::runtime_error(m_folder.string() +
-                               ": its map has another resolution, other classes or parameters");
-    MapAccess::setStore(m_map, std::make_unique<NodeStore>(MapAccess::store(leaves),
-                                                           MapAccess::store(m_map).stateBytes()));
-    tiles->addFromIndex();
-    if (m_access != Access::Write) return;
-    for (const std::string& name : tiles->index().files())
-      if (!fs::exists(m_folder / name))
-        throw std::runtime_error("cannot load map '" + (m_folder / name).string() +
-                                 "': it is missing, and " + kIndexFile + " names it");
-    removeOld();
-  }
+void MapFolder::Tiles::takeContents() {
+  SemanticOcTree leaves = loadLeaves(m_folder, m_index);
+  leaves.setHalfLives(m_map.classes());
+  MapAccess::setClock(m_map, MapAccess::clock(leaves));
+  if (emptyLike(leaves) != emptyLike(m_map))
+    throw std::runtime_error(m_folder.string() +
+                             ": its map has another resolution, other classes or parameters");
+  MapAccess::setStore(m_map,
+                      std::make_unique<NodeStore>(MapAccess::store(leaves), store().stateBytes()));
+  addFromIndex();
+  if (m_access != Access::Write) return;
+  for (const std::string& name : m_index.files())
+    if (!fs::exists(m_folder / name))
+      throw std::runtime_error("cannot load map '" + (m_folder / name).string() +
+                               "': it is missing, and " + kIndexFile + " names it");
+  removeOld();
+}
 
-  /** What the next index calls old: files that are there, and that it does not need. */
-  std::vector<std::string> oldFor(const TileIndex& next) const {
-    std::set<std::string> files = tiles->index().files();
-    files.insert(tiles->index().old.begin(), tiles->index().old.end());
-    files.insert(m_placed.begin(), m_placed.end());
-    for (const std::string& name : next.files()) files.erase(name);
-    std::vector<std::string> old;
-    for (const std::string& name : files)
-      if (fs::exists(m_folder / name)) old.push_back(name);
-    return old;
-  }
+/** What the next index calls old: files that are there, and that it does not need. */
+std::vector<std::string> MapFolder::Tiles::oldFor(const TileIndex& next) const {
+  std::set<std::string> files = m_index.files();
+  files.insert(m_index.old.begin(), m_index.old.end());
+  files.insert(m_placed.begin(), m_placed.end());
+  for (const std::string& name : next.files()) files.erase(name);
+  std::vector<std::string> old;
+  for (const std::string& name : files)
+    if (fs::exists(m_folder / name)) old.push_back(name);
+  return old;
+}
 
-  /** Puts files that are not in the folder yet there, the index last. */
-  void place(const TileIndex& index) {
-    std::vector<std::string> names;
-    for (const std::string& name : index.files())
-      if (fs::exists(m_unsaved->staged(name))) names.push_back(name);
-    m_placed.insert(names.begin(), names.end());
-    names.push_back(kIndexFile);
-    m_unsaved->commit(names);
-  }
+/** Puts files that are not in the folder yet there, the index last. */
+void MapFolder::Tiles::place(const TileIndex& index) {
+  std::vector<std::string> names;
+  for (const std::string& name : index.files())
+    if (fs::exists(m_unsaved->staged(name))) names.push_back(name);
+  m_placed.insert(names.begin(), names.end());
+  names.push_back(kIndexFile);
+  m_unsaved->commit(names);
+}
 
-  /** Unless somebody may still want them. */
-  void removeOld() const {
-    const auto alone =
-        FileLock::tryTo(m_folder / TileIndex::kReadersLock, FileLock::Kind::Exclusive);
-    if (alone) remove(tiles->index().old);
-  }
-  /** What a save put there that then failed, unless the index had taken its place. */
-  void removePlaced() {
-    if (m_placed.empty()) return;
-    try {
-      if (isAt(m_folder))
-        for (const std::string& name : readIndex(m_folder).files()) m_placed.erase(name);
-      remove(m_placed);
-    } catch (const std::exception&) {  // then they stay, and semantic-map-info tells of them
-    }
-  }
-  template <class Names>
-  void remove(const Names& names) const {
-    std::error_code ignored;
-    for (const std::string& name : names) fs::remove(m_folder / name, ignored);
-  }
+namespace {
 
-  SemanticOcTree& m_map;
-  fs::path m_folder;
-  Access m_access;
-  std::optional<FileLock> m_writer, m_reader;
-  std::optional<strict_files::OutputFolder> m_unsaved;  ///< of those who write
-  std::set<std::string> m_placed;  ///< files that a save which then failed put into the folder
-};
+template <class Names>
+void remove(const fs::path& folder, const Names& names) {
+  std::error_code ignored;
+  for (const std::string& name : names) fs::remove(folder / name, ignored);
+}
+
+}  // namespace
+
+/** Unless somebody may still want them. */
+void MapFolder::Tiles::removeOld() const {
+  const auto alone = FileLock::tryTo(m_folder / TileIndex::kReadersLock, FileLock::Kind::Exclusive);
+  if (alone) remove(m_folder, m_index.old);
+}
+
+/** What a save put there that then failed, unless the index had taken its place. */
+void MapFolder::Tiles::removePlaced() {
+  if (m_placed.empty()) return;
+  try {
+    if (isAt(m_folder))
+      for (const std::string& name : readIndex(m_folder).files()) m_placed.erase(name);
+    remove(m_folder, m_placed);
+  } catch (const std::exception&) {  // then they stay
+  }
+}
 
 SemanticOcTree MapFolder::emptyMap(const fs::path& folder) {
   const FileLock lock(folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
@@ -275,27 +241,18 @@ MapFolder::~MapFolder() = default;
 
 void MapFolder::save() { m->save(); }
 
-void MapFolder::checkFits(std::optional<std::size_t> available) const {
-  m->tiles->checkFits(available);
-}
+void MapFolder::checkFits(std::optional<std::size_t> available) const { m->checkFits(available); }
 
 void MapFolder::bringAll(std::optional<std::size_t> available) {
-  checkFits(available);
-  m->tiles->bringAll();
+  m->checkFits(available);
+  m->bringAll();
 }
 
-void MapFolder::onTile(std::function<void(std::size_t)> told) { m->tiles->onTile(std::move(told)); }
+void MapFolder::onTile(std::function<void(std::size_t)> told) { m->onTile(std::move(told)); }
 
-std::vector<std::string> MapFolder::problems() { return m->tiles->problems(); }
+std::vector<std::string> MapFolder::problems() { return m->problems(); }
 
-MapFolder::Contents MapFolder::contents() const {
-  Contents contents;
-  m->tiles->addTo(contents);
-  contents.tileSize = m->tiles->index().tileSize();
-  contents.generation = m->tiles->index().generation;
-  contents.bytesOnDisk = m->bytesOnDisk();
-  return contents;
-}
+MapFolder::Contents MapFolder::contents() const { return m->contents(); }
 
 using strict_files::above;
 using strict_files::atLeast;
@@ -307,8 +264,6 @@ void MapFolderOptions::describe(strict_files::OptionList& list) {
 }
 
 void MapFolderOptions::validate() const { strict_files::checkOptions(*this, "MapFolderOptions"); }
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -348,22 +303,6 @@ StoredMap::StoredMap(SemanticOcTree empty, const fs::path& folder, const MapFold
 bool MapFolder::isAt(const fs::path& folder) {
   std::error_code ignored;
   return fs::is_regular_file(folder / MapFolder::kIndexFile, ignored);
-}
-
-MapFolder::Others MapFolder::othersAt(const fs::path& folder) {
-  const strict_files::FileLock lock(folder / TileIndex::kReadersLock,
-                                    strict_files::FileLock::Kind::Shared);
-  const TileIndex index = readIndex(folder);
-  std::set<std::string> names = index.files();
-  names.insert(index.old.begin(), index.old.end());
-  names.insert({kIndexFile, TileIndex::kWriterLock, TileIndex::kReadersLock});
-  Others others;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file() || names.count(entry.path().filename().string())) continue;
-    ++others.files;
-    others.bytes += entry.file_size();
-  }
-  return others;
 }
 
 SemanticOcTree loadMap(const fs::path& path) {

@@ -28,12 +28,8 @@ std::string checksumLine(const std::string& text) {
   return kChecksumKey + std::to_string(extendCrc(0, text.data(), text.size())) + '\n';
 }
 
-/** \throw std::runtime_error naming the file: cut off, altered, or of version 1 */
+/** \throw std::runtime_error naming the file: cut off or altered */
 std::string verified(const std::string& text, const fs::path& file) {
-  if (text.find("\nversion: 1\n") != std::string::npos)
-    throw std::runtime_error(file.string() +
-                             ": version 1 of the format, expected 2; the tiles are maps, of which "
-                             "'semantic-map-merge FOLDER/*.semantic -o NEW --tiles EDGE' makes it");
   const std::size_t last = text.rfind(std::string("\n") + kChecksumKey);
   const std::string covered = last == std::string::npos ? text : text.substr(0, last + 1);
   if (covered + checksumLine(covered) != text)

@@ -4,7 +4,6 @@
 #include <semantic_octree/store/Scan.h>
 #include <semantic_octree/store/TreeFormat.h>
 #include <strict_files/Memory.h>
-#include <strict_files/OutputFiles.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
@@ -58,21 +57,21 @@ void addTouched(const Scan& scan, const Cube& cell, int depth, std::vector<Voxel
 
 }  // namespace
 
-void TilesOnDisk::addFromIndex() {
+void MapFolder::Tiles::addFromIndex() {
   NodeStore& nodes = store();
   NodeArena& arena = nodes.arena(0);
   const auto add = [&](const auto& self, Slot& slot, const Cube& cell,
                        const TileIndex::Tile& tile) -> void {
     if (slot.isLeaf())
-      throw std::runtime_error((m_place.folder / MapFolder::kIndexFile).string() +
+      throw std::runtime_error((m_folder / MapFolder::kIndexFile).string() +
                                ": altered: a tile where all is one leaf");
     if (!slot.isKnown()) {
       arena.createOctant(slot);
       slot.value = kUnknown;
     }
     slot.value = std::max(slot.value, tile.highest);
-    if (cell.depth == m_place.depth) return;
-    const int i = childOnTheWay(cubeAt(tile.place, m_place.depth), cell.depth + 1);
+    if (cell.depth == m_index.depth) return;
+    const int i = childOnTheWay(cubeAt(tile.place, m_index.depth), cell.depth + 1);
     self(self, nodes.octant(slot).slots[i], cell.child(i), tile);
   };
   for (const TileIndex::Tile& t : m_index.tiles) {
@@ -87,10 +86,10 @@ void TilesOnDisk::addFromIndex() {
   }
 }
 
-Slot* TilesOnDisk::slotOf(const Tile& tile) const {
+Slot* MapFolder::Tiles::slotOf(const Tile& tile) const {
   const NodeStore& nodes = store();
   Slot* slot = &store().root();
-  for (int depth = 1; depth <= m_place.depth; ++depth) {
+  for (int depth = 1; depth <= m_index.depth; ++depth) {
     if (slot->kind != Kind::Octant) return nullptr;
     slot = &nodes.octant(*slot).slots[childOnTheWay(cellOf(tile), depth)];
   }
@@ -98,16 +97,17 @@ Slot* TilesOnDisk::slotOf(const Tile& tile) const {
 }
 
 /** A save that failed halfway has put files into the folder, too. */
-std::string TilesOnDisk::fileOf(const Tile& tile) const {
+std::string MapFolder::Tiles::fileOf(const Tile& tile) const {
   const std::string name = m_index.nameOf(tile.place, tile.written);
-  const bool isSaved = tile.written <= m_index.generation;
-  const bool isThere = isSaved || (tile.isAway && !std::filesystem::exists(m_place.changed / name));
-  return ((isThere ? m_place.folder : m_place.changed) / name).string();
+  if (!m_unsaved || tile.written <= m_index.generation) return (m_folder / name).string();
+  const std::filesystem::path changed = m_unsaved->staged(name);
+  const bool isPlaced = tile.isAway && !std::filesystem::exists(changed);
+  return (isPlaced ? m_folder / name : changed).string();
 }
 
 /** Memory that tiles leave is taken by what comes next: so that threads, each of which has its own,
  * get their share. */
-NodeArena& TilesOnDisk::arenaWith(bool most) {
+NodeArena& MapFolder::Tiles::arenaWith(bool most) {
   NodeStore& nodes = store();
   int best = 0;
   for (int i = 1; i < nodes.numArenas(); ++i) {
@@ -117,20 +117,20 @@ NodeArena& TilesOnDisk::arenaWith(bool most) {
   return nodes.arena(best);
 }
 
-void TilesOnDisk::bring(Slot& away) {
+void MapFolder::Tiles::bring(Slot& away) {
   Tile& tile = m_tiles.at(codeOfAway(store().octant(away)));
   tile.used = ++m_clock;
   fetchIntoBudget(away, tile);
 }
 
-void TilesOnDisk::fetchIntoBudget(Slot& slot, Tile& tile) {
+void MapFolder::Tiles::fetchIntoBudget(Slot& slot, Tile& tile) {
   // Others go before it comes: what they took is for it.
-  makeRoom(m_clock, m_place.budget - std::min(m_place.budget, store().expectedBytes(tile.nodes)));
+  makeRoom(m_clock, m_budget - std::min(m_budget, store().expectedBytes(tile.nodes)));
   fetch(slot, tile);
-  makeRoom(m_clock, m_place.budget);
+  makeRoom(m_clock, m_budget);
 }
 
-void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
+void MapFolder::Tiles::fetch(Slot& slot, Tile& tile) {
   read(slot, tile);
   tile.isAway = false;
   tile.halfLives.reset();
@@ -140,7 +140,7 @@ void TilesOnDisk::fetch(Slot& slot, Tile& tile) {
   m_told(static_cast<std::size_t>(place - m_order.begin()));
 }
 
-void TilesOnDisk::read(Slot& slot, const Tile& tile) {
+void MapFolder::Tiles::read(Slot& slot, const Tile& tile) {
   NodeStore& nodes = store();
   NodeArena& arena = arenaWith(true);
   const std::size_t numNodes = nodes.numNodes(), numInner = nodes.numInnerNodes();
@@ -173,7 +173,7 @@ void TilesOnDisk::read(Slot& slot, const Tile& tile) {
 }
 
 /** If memory runs out, the map is broken; the folder is what it was. */
-void TilesOnDisk::removeChildren(NodeArena& arena, const Slot& octant) {
+void MapFolder::Tiles::removeChildren(NodeArena& arena, const Slot& octant) {
   try {
     for (Slot& child : store().octant(octant).slots)
       if (child.isKnown()) arena.remove(child);
@@ -183,16 +183,16 @@ void TilesOnDisk::removeChildren(NodeArena& arena, const Slot& octant) {
   }
 }
 
-void TilesOnDisk::prepare(const Scan& scan) {
+void MapFolder::Tiles::prepare(const Scan& scan) {
   std::vector<VoxelIndex> cubes;
-  addTouched(scan, Cube(), m_place.depth, cubes);
+  addTouched(scan, Cube(), m_index.depth, cubes);
   ++m_clock;
   for (const VoxelIndex& cube : cubes) {
     Tile& tile = m_tiles[tileCode(cube)];
     tile.place = cube;
     tile.used = m_clock;
   }
-  makeRoom(m_clock, m_place.budget);
+  makeRoom(m_clock, m_budget);
   for (const VoxelIndex& cube : cubes) {
     Tile& tile = m_tiles.at(tileCode(cube));
     if (tile.isAway) fetchIntoBudget(*slotOf(tile), tile);
@@ -200,18 +200,18 @@ void TilesOnDisk::prepare(const Scan& scan) {
   for (const VoxelIndex& cube : cubes) m_tiles.at(tileCode(cube)).isDirty = true;
 }
 
-void TilesOnDisk::changed(const Cube& cell) {
+void MapFolder::Tiles::changed(const Cube& cell) {
   const VoxelIndex place = indexOf(cell);
   Tile& tile = m_tiles[tileCode(place)];
   tile.place = place;
   tile.used = ++m_clock;
   tile.isDirty = true;
-  makeRoom(m_clock, m_place.budget);
+  makeRoom(m_clock, m_budget);
 }
 
-void TilesOnDisk::sendAway() { makeRoom(m_clock + 1, 0); }
+void MapFolder::Tiles::sendAway() { makeRoom(m_clock + 1, 0); }
 
-void TilesOnDisk::makeRoom(std::uint64_t usedBefore, std::size_t budget) {
+void MapFolder::Tiles::makeRoom(std::uint64_t usedBefore, std::size_t budget) {
   if (store().bytes() <= budget) return;
   std::vector<Tile*> candidates;
   for (Entry& entry : m_tiles)
@@ -228,7 +228,7 @@ void TilesOnDisk::makeRoom(std::uint64_t usedBefore, std::size_t budget) {
   }
 }
 
-void TilesOnDisk::send(Slot& slot, Tile& tile) {
+void MapFolder::Tiles::send(Slot& slot, Tile& tile) {
   NodeStore& nodes = store();
   if (tile.isDirty) write(slot, tile);
   Count count;
@@ -245,20 +245,20 @@ void TilesOnDisk::send(Slot& slot, Tile& tile) {
   ++m_sentOut;
 }
 
-void TilesOnDisk::write(const Slot& slot, Tile& tile) {
+void MapFolder::Tiles::write(const Slot& slot, Tile& tile) {
   Count count;
   countBelow(store(), slot, count);
   Tile next = tile;
-  next.written = m_place.next;
+  next.written = m_next;
   tile.checksum =
       saveTile(m_map, slot, cellOf(tile), static_cast<std::uint64_t>(count.nodes), fileOf(next));
   tile.written = next.written;
   tile.isDirty = false;
 }
 
-TileIndex TilesOnDisk::writeChanged() {
+TileIndex MapFolder::Tiles::writeChanged() {
   TileIndex index = m_index;
-  index.generation = m_place.next;
+  index.generation = m_next;
   index.tiles.clear();
   for (auto it = m_tiles.begin(); it != m_tiles.end();) {
     Tile& tile = it->second;
@@ -279,40 +279,40 @@ TileIndex TilesOnDisk::writeChanged() {
   return index;
 }
 
-bool TilesOnDisk::mayHold(const Slot& away, const ClassSet& classes) const {
+bool MapFolder::Tiles::mayHold(const Slot& away, const ClassSet& classes) const {
   const auto& halfLives = m_tiles.at(codeOfAway(store().octant(away))).halfLives;
   return !halfLives || (*halfLives & classes).any();
 }
 
-void TilesOnDisk::checkFits(std::optional<std::size_t> most) const {
+void MapFolder::Tiles::checkFits(std::optional<std::size_t> most) const {
   const std::uint64_t available = most.value_or(strict_files::availableMemory());
   const std::uint64_t needed = kBytesOfLeaf * m_map.getNumLeafNodes();
   if (needed > available)
-    throw std::runtime_error(m_place.folder.string() + ": as a whole it needs about " +
+    throw std::runtime_error(m_folder.string() + ": as a whole it needs about " +
                              strict_files::sizeText(needed) + " of memory, and " +
                              strict_files::sizeText(available) + " are left");
 }
 
-std::vector<std::uint64_t> TilesOnDisk::sortedCodes() const {
+std::vector<std::uint64_t> MapFolder::Tiles::sortedCodes() const {
   std::vector<std::uint64_t> codes;
   for (const Entry& entry : m_tiles) codes.push_back(entry.first);
   std::sort(codes.begin(), codes.end());
   return codes;
 }
 
-void TilesOnDisk::onTile(std::function<void(std::size_t)> told) {
+void MapFolder::Tiles::onTile(std::function<void(std::size_t)> told) {
   m_told = std::move(told);
   m_order = sortedCodes();
 }
 
-void TilesOnDisk::bringAll() {
+void MapFolder::Tiles::bringAll() {
   for (const std::uint64_t code : sortedCodes()) {
     Tile& tile = m_tiles.at(code);
     if (tile.isAway) fetch(*slotOf(tile), tile);
   }
 }
 
-std::vector<std::string> TilesOnDisk::problems() {
+std::vector<std::string> MapFolder::Tiles::problems() {
   std::vector<std::string> problems;
   for (const std::uint64_t code : sortedCodes()) {
     const auto tile = m_tiles.find(code);
@@ -326,14 +326,23 @@ std::vector<std::string> TilesOnDisk::problems() {
   return problems;
 }
 
-void TilesOnDisk::addTo(MapFolder::Contents& contents) const {
+MapFolder::Contents MapFolder::Tiles::contents() const {
+  Contents contents;
   for (const Entry& entry : m_tiles) {
     const bool exists = slotOf(entry.second) != nullptr;
     contents.tiles += exists;
     contents.tilesInMemory += exists && !entry.second.isAway;
   }
+  contents.tileSize = m_index.tileSize();
+  contents.generation = m_index.generation;
+  for (const std::string& name : m_index.files()) {
+    std::error_code missing;
+    const auto size = std::filesystem::file_size(m_folder / name, missing);
+    if (!missing) contents.bytesOnDisk += size;
+  }
   contents.broughtIn = m_broughtIn;
   contents.sentOut = m_sentOut;
+  return contents;
 }
 
 }  // namespace semantic_octree

@@ -2,51 +2,38 @@
 #include <map_folders/MapFolder.h>
 #include <semantic_octree/store/MapAccess.h>
 #include <semantic_octree/store/TileCodes.h>
+#include <strict_files/OutputFiles.h>
 
+#include <set>
 #include <unordered_map>
 
 #include "TileIndex.h"
 
 namespace semantic_octree {
 
-/** Which tiles of a map are in memory. A tile is an inner node at a depth. If it goes away, it
- * keeps its value and bookkeeping; nothing above has to know. */
-class TilesOnDisk : public TileSource {
+/** Which tiles of a map are in memory, and where the others are. A tile is an inner node at a
+ * depth. If it goes away, it keeps its value and bookkeeping; nothing above has to know. */
+class MapFolder::Tiles final : public TileSource {
  public:
-  struct Place {
-    std::filesystem::path folder;
-    int depth;
-    std::size_t budget;  ///< bytes
-    bool mayWrite;
-    std::filesystem::path changed;  ///< where tiles of the next generation are until they are saved
-    std::uint64_t next;             ///< generation
-  };
-  TilesOnDisk(SemanticOcTree& map, Place place, TileIndex index)
-      : m_map(map), m_place(std::move(place)), m_index(std::move(index)) {}
+  Tiles(SemanticOcTree& map, std::filesystem::path folder, Access access,
+        const MapFolderOptions& options);
+  ~Tiles() override;
 
   void bring(Slot& away) override;
   void prepare(const Scan& scan) override;
   void sendAway() override;
   void clear() override { m_tiles.clear(); }
-  bool mayChange() const override { return m_place.mayWrite; }
-  int depth() const override { return m_place.depth; }
+  bool mayChange() const override { return m_unsaved.has_value(); }
+  int depth() const override { return m_index.depth; }
   void changed(const Cube& cell) override;
   bool mayHold(const Slot& away, const ClassSet& classes) const override;
   void checkFits(std::optional<std::size_t> available) const override;
 
-  /** Adds the tiles that the index has to a map that has none. */
-  void addFromIndex();
+  void save();
   void bringAll();
-  /** Writes what changed as files of the next generation. \return the index, but for leaves */
-  TileIndex writeChanged();
-  const TileIndex& index() const { return m_index; }
-  void setIndex(TileIndex index) {
-    m_index = std::move(index);
-    m_place.next = m_index.generation + 1;
-  }
   void onTile(std::function<void(std::size_t)> told);
   std::vector<std::string> problems();
-  void addTo(MapFolder::Contents& contents) const;
+  Contents contents() const;
 
  private:
   struct Tile {
@@ -62,7 +49,23 @@ class TilesOnDisk : public TileSource {
   using Entry = std::pair<const std::uint64_t, Tile>;
 
   NodeStore& store() const { return MapAccess::store(m_map); }
-  Cube cellOf(const Tile& tile) const { return cubeAt(tile.place, m_place.depth); }
+  Cube cellOf(const Tile& tile) const { return cubeAt(tile.place, m_index.depth); }
+  bool isOfMap() const { return !m_map.isBroken() && store().tiles() == this; }
+  bool saves() const { return m_access == Access::Write || m_access == Access::Replace; }
+
+  // The folder.
+  TileIndex open(const MapFolderOptions& options);
+  void takeContents();
+  /** Adds the tiles that the index has to a map that has none. */
+  void addFromIndex();
+  /** Writes what changed as files of the next generation. \return the index, but for leaves */
+  TileIndex writeChanged();
+  std::vector<std::string> oldFor(const TileIndex& next) const;
+  void place(const TileIndex& index);
+  void removeOld() const;
+  void removePlaced();
+
+  // The tiles.
   /** Where it is, or is to be written. */
   std::string fileOf(const Tile& tile) const;
   /** Morton codes of the tiles, which is the order of whatever goes depth first. */
@@ -80,8 +83,15 @@ class TilesOnDisk : public TileSource {
   void makeRoom(std::uint64_t usedBefore, std::size_t budget);
 
   SemanticOcTree& m_map;
-  Place m_place;
-  TileIndex m_index;                                ///< as it was saved
+  std::filesystem::path m_folder;
+  Access m_access;
+  std::optional<strict_files::FileLock> m_writer, m_reader;
+  std::optional<strict_files::OutputFolder> m_unsaved;  ///< of those who write
+  std::set<std::string> m_placed;  ///< files that a save which then failed put into the folder
+  TileIndex m_index;               ///< as it was saved
+  std::uint64_t m_next = 0;        ///< generation
+  std::size_t m_budget = 0;        ///< bytes
+
   std::unordered_map<std::uint64_t, Tile> m_tiles;  ///< by Morton code
   std::uint64_t m_clock = 0;
   std::size_t m_broughtIn = 0, m_sentOut = 0;

@@ -43,12 +43,12 @@ class Assembly {
 
 constexpr Color kRubber{38, 38, 40}, kGlass{58, 72, 86}, kSkin{206, 160, 130};
 
-/** A low, upright panel between two points of the ground. */
-Solids panel(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double thickness, double height,
-             Material material) {
+/** A low, upright panel between two points of the ground, which overlaps the next. */
+Solids panel(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double overlap, double thickness,
+             double height, Material material) {
   const Eigen::Vector2d along = (b - a).head<2>();
   const Polygon outline = rectangle((a + b).head<2>() / 2, std::atan2(along.y(), along.x()),
-                                    along.norm() + 0.02, thickness);
+                                    along.norm() + overlap, thickness);
   const double low = std::min(a.z(), b.z()), high = std::max(a.z(), b.z());
   return {{Polyhedron(outline, outline, low - 0.6, high + height), material}};
 }
@@ -102,13 +102,17 @@ Solids sign(const Eigen::Vector3d& base, double yaw) {
 }
 
 Solids fencePanel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  Solids result = panel(a, b, 0.05, 1.05, kFence);
+  Solids result = panel(a, b, 0.02, 0.05, 1.05, kFence);
   result.emplace_back(Shaft{a.head<2>(), 0.07, 0.07, a.z() - 0.5, a.z() + 1.2}, kFence);
   return result;
 }
 
 Solids wallPanel(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double height) {
-  return panel(a, b, 0.3, height, kWall);
+  return panel(a, b, 0.02, 0.3, height, kWall);
+}
+
+Solids hedgePanel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return panel(a, b, 0.15, 0.7, 1.0, kBush);
 }
 
 Solids roadblock(const Eigen::Vector3d& base, double yaw, double length) {
@@ -194,14 +198,6 @@ Solids rock(const Eigen::Vector3d& base, Random& random) {
     top.push_back(at + 0.55 * size * out);
   }
   return {{Polyhedron(bottom, top, base.z() - 0.2, base.z() + height), stone}};
-}
-
-Solids hedgePanel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Vector2d along = (b - a).head<2>();
-  const Polygon outline =
-      rectangle((a + b).head<2>() / 2, std::atan2(along.y(), along.x()), along.norm() + 0.15, 0.7);
-  const double low = std::min(a.z(), b.z()), high = std::max(a.z(), b.z());
-  return {{Polyhedron(outline, outline, low - kRoot, high + 1.0), kBush}};
 }
 
 namespace {

@@ -46,17 +46,6 @@ Eigen::Isometry3d Drive::T_world_robot(double time) const {
   return m_scene->world.poseOnGround(at.x(), at.y(), m_scene->route.heading(s));
 }
 
-Solids Walker::at(const World& world, double time) const {
-  constexpr double kStep = 0.7;  // m
-  const Eigen::Vector2d way = to - from;
-  const double length = way.norm(), walked = speed * time;
-  const double phase = std::fmod(walked, 2 * length);
-  const bool back = phase > length;
-  const Eigen::Vector2d at = from + way / length * (back ? 2 * length - phase : phase);
-  const double yaw = std::atan2(way.y(), way.x()) + (back ? M_PI : 0);
-  return person({at.x(), at.y(), world.groundHeight(at.x(), at.y())}, yaw, clothes, walked / kStep);
-}
-
 namespace {
 
 constexpr double kCampusLane = 1.3;
@@ -151,7 +140,7 @@ Scene makeCampus(std::uint64_t seed, double hills) {
   b.bushes(40, {{-60, -60}, {60, 60}});
   b.scatter(10, {{-40, -24}, {40, 34}}, 0.9, 0.3,
             [&](const Eigen::Vector3d& base) { b.add(rock(base, b.random)); });
-  return b.finish("campus", seed, ring.parallel(-kCampusLane));
+  return b.finish(ring.parallel(-kCampusLane));
 }
 
 namespace {
@@ -227,7 +216,7 @@ Scene makePark(std::uint64_t seed, double hills) {
             [&](const Eigen::Vector3d& base) { b.add(rock(base, b.random)); });
   const Eigen::Vector2d visitor = roads[1].middle.beside(16, -1.4);
   b.add(car(b.onGround(visitor), roads[1].middle.heading(16), {216, 214, 206}));
-  return b.finish("park", seed, loop.parallel(-0.9));
+  return b.finish(loop.parallel(-0.9));
 }
 
 namespace {
@@ -298,7 +287,7 @@ Scene makeVillage(std::uint64_t seed, double hills) {
   b.bushes(50, {{-55, -45}, {55, 50}});
   b.scatter(8, {{-24, -6}, {0, 22}}, 0.9, 0.3,
             [&](const Eigen::Vector3d& base) { b.add(rock(base, b.random)); });
-  return b.finish("village", seed, ring.parallel(-kVillageLane));
+  return b.finish(ring.parallel(-kVillageLane));
 }
 
 }  // namespace synthetic_world

@@ -108,9 +108,8 @@ void SceneBuilder::bushes(int count, const Region& region) {
   scatter(count, region, 0.9, 0.1, [&](const Eigen::Vector3d& base) { add(bush(base, random)); });
 }
 
-Scene SceneBuilder::finish(const std::string& name, std::uint64_t seed, Curve route) {
-  return {name, seed, World(std::move(m_terrain), std::move(cover), std::move(m_solids)),
-          std::move(route)};
+Scene SceneBuilder::finish(Curve route) {
+  return {World(std::move(m_terrain), std::move(cover), std::move(m_solids)), std::move(route)};
 }
 
 namespace {

@@ -52,7 +52,7 @@ class SceneBuilder {
   /** Fence, wall or hedge beside a curve wherever there is room for a panel. */
   void enclosure(const Curve& curve, double from, double to, double left, ClassId id);
 
-  Scene finish(const std::string& name, std::uint64_t seed, Curve route);
+  Scene finish(Curve route);
 
  private:
   void garden(const Road& road, double s, double left, const Eigen::Vector2d& door);

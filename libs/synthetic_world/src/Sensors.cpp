@@ -42,7 +42,7 @@ void LidarOptions::validate() const {
   strict_files::checkOptions(*this, "LidarOptions");
   strict_files::require(ghosts >= 0 && ghosts <= 1, "LidarOptions::ghosts", ghosts,
                         "a number from 0 to 1");
-  noise.validate();
+  strict_files::checkOptions(noise, "SensorNoise");
   strict_files::require(lowest <= highest, "LidarOptions::lowest", lowest, "at most highest");
 }
 
@@ -95,7 +95,6 @@ LabeledCloud scanLidar(const World& world, const LidarPath& path, const LidarOpt
       if (!hit) continue;
       const double range = options.noise.disturbed(hit->range, random);
       if (range < LidarOptions::kMinRange || range > options.maxRange) continue;
-      if (options.noise.drops(random)) continue;
       cloud.points.push_back((range * beam).cast<float>());
       cloud.classes.push_back(options.noise.disturbed(hit->material.id, random));
     }
@@ -107,12 +106,6 @@ void SensorNoise::describe(strict_files::OptionList& list) {
   list.add("range_noise", range, "m", strict_files::atLeast(0),
            "standard deviation of ranges and depths");
   list.add("label_noise", label, "", between(0, 1), "share of labels that are of another class");
-}
-
-void SensorNoise::validate() const {
-  strict_files::checkOptions(*this, "SensorNoise");
-  strict_files::require(dropout >= 0 && dropout <= 1, "SensorNoise::dropout", dropout,
-                        "a number from 0 to 1");
 }
 
 ClassId SensorNoise::disturbed(ClassId id, Random& random) const {
@@ -265,7 +258,7 @@ void CameraOptions::describe(strict_files::OptionList& list) {
 
 void CameraOptions::validate() const {
   strict_files::checkOptions(*this, "CameraOptions");
-  noise.validate();
+  strict_files::checkOptions(noise, "SensorNoise");
 }
 
 CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_camera,
@@ -291,7 +284,6 @@ CameraFrame renderCamera(const World& world, const Eigen::Isometry3d& T_world_ca
       Random random = Random::ofStream(seed.seed, kCameraStream + 4 * seed.frame, pixel);
       const double depth = options.noise.disturbed(hit->range / rangePerDepth, random);
       if (depth < CameraOptions::kMinRange || depth > options.maxRange) continue;
-      if (options.noise.drops(random)) continue;
       frame.depth.at(row, column) = static_cast<float>(depth);
       frame.labels.at(row, column) = options.noise.disturbed(hit->material.id, random);
     }

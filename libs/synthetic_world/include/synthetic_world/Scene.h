@@ -10,8 +10,6 @@ namespace synthetic_world {
 
 /** A place, and a round trip through it. */
 struct Scene {
-  std::string name;
-  std::uint64_t seed;
   World world;
   Curve route;  // closed, in the right lane of the roads
 };
@@ -44,16 +42,6 @@ class Drive {
  private:
   const Scene* m_scene;
   double m_speed, m_start;
-};
-
-/** A person who walks to and fro between two points; see Objects.h for the look. */
-struct Walker {
-  Eigen::Vector2d from, to;
-  double speed = 1.2;  // m/s
-  Color clothes{188, 62, 52};
-
-  /** The person at a time in seconds, to be given to World::setMovables(). */
-  Solids at(const World& world, double time) const;
 };
 
 }  // namespace synthetic_world

@@ -31,15 +31,11 @@ struct Image {
 
 /** What a sensor gets wrong. All zero: nothing. */
 struct SensorNoise {
-  double range = 0;    // standard deviation of ranges and depths, m
-  double label = 0;    // share of labels replaced by one of the other classes at random, 0..1
-  double dropout = 0;  // share of rays without a return, 0..1
+  double range = 0;  // standard deviation of ranges and depths, m
+  double label = 0;  // share of labels replaced by one of the other classes at random, 0..1
 
   void describe(strict_files::OptionList& list);
-  /** \throw std::invalid_argument naming the field. */
-  void validate() const;
 
-  bool drops(Random& random) const { return dropout > 0 && random.chance(dropout); }
   double disturbed(double meters, Random& random) const {
     return range > 0 ? meters + range * random.normal() : meters;
   }
