@@ -78,13 +78,9 @@ TEST_F(Rosbag2, mcapOfAnyCompressionHasTheScansAndWhereTheyWere) {
     }
 }
 
-TEST_F(Rosbag2, sqliteHasThemToo) {
+TEST_F(Rosbag2, sqliteHasThemTooAndWhatItsRecorderDidNotWriteToItsPlaceYet) {
   writeSqliteBag(folder / "a.db3", drive());
   expectDrive(scansOf(quoted(folder / "a.db3"), folder));
-}
-
-TEST_F(Rosbag2, sqliteHasWhatItsRecorderDidNotWriteToItsPlaceYet) {
-  writeSqliteBag(folder / "a.db3", drive());
   sqlite3* recorder = nullptr;
   sqlite3_open((folder / "a.db3").c_str(), &recorder);
   sqlite3_exec(recorder,
@@ -297,84 +293,70 @@ TEST_F(Rosbag2, laserScansWhoseBeamsTakeTimeHaveTheirTimes) {
 
 TEST_F(Rosbag2, whatIsWrongWithImagesIsNamed) {
   tableIn(folder);
-  const auto failureWith = [&](const std::vector<BagMessage>& more,
-                               const std::string& arguments = "") {
+  const auto expectFailure = [&](const std::vector<BagMessage>& more, const std::string& part,
+                                 const std::string& arguments = "") {
     auto bag = cameraDrive();
     bag.insert(bag.end(), more.begin(), more.end());
-    return messageOf("--classes " + quoted(folder / "classes.yaml") + " " + arguments + " " +
-                         quoted(folder.write("a.mcap", mcapOf(bag, ""))),
-                     folder);
+    const std::string file = quoted(folder.write("a.mcap", mcapOf(bag, "")));
+    EXPECT_TRUE(contains(
+        messageOf("--classes " + quoted(folder / "classes.yaml") + " " + arguments + " " + file,
+                  folder),
+        part));
   };
-  const auto has = [](const std::string& message, const std::string& part) {
-    EXPECT_TRUE(contains(message, part));
-  };
-  auto tooShort = depthImage(101);
+  const auto depth = depthImage(101);
+  auto tooShort = depth, unknown = labelImage(101);
   tooShort.bytes.resize(tooShort.bytes.size() - 3);
-  has(failureWith({tooShort}), "a message of /cam/depth/image: ends too early");
-  auto otherSize = labelImage(101);
-  otherSize =
-      imageMessage("/net/labels", 101, "optical", "mono8", 2, std::vector<std::uint8_t>(4, 40));
-  has(failureWith({depthImage(101), otherSize}),
-      "the label image has 2 x 2 pixels, the depth image 4 x 2");
-  auto unknown = labelImage(101);
   unknown.bytes[unknown.bytes.size() - 3] = 41;
-  has(failureWith({depthImage(101), unknown}), "/net/labels: raw class id 41");
-  has(failureWith({depthImage(101), labelImage(101), labelImage(101, "/b/labels")}),
-      "--label-images has to choose one of /b/labels, /net/labels");
-  has(failureWith({depthImage(101)}, "--label-images /gone"), "no topic '/gone' of images");
-  has(failureWith({depthImage(101, "/other/image")}), "there is no /other/camera_info");
-  has(failureWith({depthImage(101), depthImage(101, "/b/image")}),
-      "--topics has to choose the topics of points; there are: /b/image, /cam/depth/image");
-  has(failureWith({laserMessage("/scan", 101, "laser", NAN, 1, {1})}),
-      "angles that are no numbers");
-  has(failureWith({laserMessage("/scan", 101, "laser", 0, 1, {})}), "without beams");
-  auto camera = cameraMessage("/cam/depth/camera_info", 100, 8, 8, 2);
+  const auto otherSize =
+      imageMessage("/net/labels", 101, "optical", "mono8", 2, std::vector<std::uint8_t>(4, 40));
+  expectFailure({tooShort}, "a message of /cam/depth/image: ends too early");
+  expectFailure({depth, otherSize}, "label image has 2 x 2 pixels, the depth image 4 x 2");
+  expectFailure({depth, unknown}, "/net/labels: raw class id 41");
+  expectFailure({depth, labelImage(101), labelImage(101, "/b/labels")},
+                "--label-images has to choose one of /b/labels, /net/labels");
+  expectFailure({depth}, "no topic '/gone' of images", "--label-images /gone");
+  expectFailure({depthImage(101, "/other/image")}, "there is no /other/camera_info");
+  expectFailure({depth, depthImage(101, "/b/image")},
+                "--topics has to choose the topics of points; there are: /b/image, /cam/depth/");
+  expectFailure({laserMessage("/scan", 101, "laser", NAN, 1, {1})}, "angles that are no numbers");
+  expectFailure({laserMessage("/scan", 101, "laser", 0, 1, {})}, "without beams");
   auto bag = cameraDrive();
-  bag[3] = camera;
-  bag.push_back(depthImage(101));
-  has(messageOf("--no-labels " + quoted(folder.write("b.mcap", mcapOf(bag, ""))), folder),
-      "the camera's calibration is for 8 x 8 pixels, the image has 4 x 2");
+  bag[3] = cameraMessage("/cam/depth/camera_info", 100, 8, 8, 2);
+  bag.push_back(depth);
+  EXPECT_TRUE(
+      contains(messageOf("--no-labels " + quoted(folder.write("b.mcap", mcapOf(bag, ""))), folder),
+               "the camera's calibration is for 8 x 8 pixels, the image has 4 x 2"));
 }
 
 TEST_F(Rosbag2, whatIsWrongIsNamed) {
   tableIn(folder);
-  const auto failureWith = [&](const std::string& bytes,
-                               const std::string& arguments = "--no-labels") {
-    return messageOf(arguments + " " + quoted(folder.write("a.mcap", bytes)), folder);
-  };
-  const std::string labels = "--classes " + quoted(folder / "classes.yaml");
-  const auto has = [](const std::string& message, const std::string& part) {
-    EXPECT_TRUE(contains(message, "a.mcap"));
-    EXPECT_TRUE(contains(message, part));
-  };
-  const std::string good = mcapOf(drive(), "zstd");
-  has(failureWith("no bag at all"), "is no MCAP file");
-  has(failureWith(good.substr(0, 200)), "is cut off");
-  std::string damaged = mcapOf(drive(), "");
+  const std::string labels = "--classes " + quoted(folder / "classes.yaml"), none = "--no-labels",
+                    good = mcapOf(drive(), "zstd");
+  std::string damaged = mcapOf(drive(), ""), packed = good;
   damaged[damaged.find("base_link")] ^= 1;
-  has(failureWith(damaged), "its checksum is another");
-  damaged = good;
-  damaged[300] ^= 0x55;
-  has(failureWith(damaged), "is damaged");
-  auto bag = drive();
-  bag[4].bytes.resize(60);
-  has(failureWith(mcapOf(bag, ""), labels), "message 1 of /points: ends too early");
-  bag = drive();
-  bag[4].bytes[1] = 7;
-  has(failureWith(mcapOf(bag, ""), labels), "message 1 of /points: has the encoding 7");
-  bag = drive();
-  bag[5] = cloudMessage("/points", 101, "lidar", {{1, 0, 0, 41}});
-  has(failureWith(mcapOf(bag, ""), labels), "message 2 of /points: field 'label': raw class id 41");
-  has(failureWith(good, labels + " --label-field class"), "no field 'class'");
-  EXPECT_TRUE(contains(messageOf("--no-labels " + quoted(folder.write("a.bag", "x")), folder),
-                       "expected a bag of ROS 2"));
-  EXPECT_TRUE(
-      contains(messageOf("--no-labels " + quoted(folder.write("a.db3", "no database")), folder),
-               "is no bag that can be read"));
-  EXPECT_TRUE(
-      contains(messageOf("--no-labels " + quoted(folder / "gone.mcap"), folder), "no such bag"));
+  packed[300] ^= 0x55;
+  auto early = drive(), encoded = drive(), unknown = drive();
+  early[4].bytes.resize(60);
+  encoded[4].bytes[1] = 7;
+  unknown[5] = cloudMessage("/points", 101, "lidar", {{1, 0, 0, 41}});
   ASSERT_EQ(mkfifo((folder / "pipe.db3").c_str(), 0600), 0);
-  EXPECT_TRUE(contains(messageOf("--no-labels " + quoted(folder / "pipe.db3"), folder), "a pipe"));
+  for (const auto& [name, bytes, arguments, part] : std::vector<std::array<std::string, 4>>{
+           {"a.mcap", "no bag at all", none, "is no MCAP file"},
+           {"a.mcap", good.substr(0, 200), none, "is cut off"},
+           {"a.mcap", damaged, none, "its checksum is another"},
+           {"a.mcap", packed, none, "is damaged"},
+           {"a.mcap", mcapOf(early, ""), labels, "message 1 of /points: ends too early"},
+           {"a.mcap", mcapOf(encoded, ""), labels, "message 1 of /points: has the encoding 7"},
+           {"a.mcap", mcapOf(unknown, ""), labels, "2 of /points: field 'label': raw class id 41"},
+           {"a.mcap", good, labels + " --label-field class", "no field 'class'"},
+           {"a.bag", "x", none, "expected a bag of ROS 2"},
+           {"a.db3", "no database", none, "is no bag that can be read"},
+           {"gone.mcap", "", none, "no such bag"},
+           {"pipe.db3", "", none, "a pipe"}}) {
+    if (!bytes.empty()) folder.write(name, bytes);
+    const std::string message = messageOf(arguments + " " + quoted(folder / name), folder);
+    EXPECT_TRUE(contains(message, name) && contains(message, part)) << message;
+  }
 }
 
 TEST_F(Rosbag2, aChunkThatAnnouncesMoreThanItHoldsTakesNoMemory) {
