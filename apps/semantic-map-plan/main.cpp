@@ -9,12 +9,13 @@
 #include <strict_files/OutputFiles.h>
 #include <strict_files/TextFile.h>
 #include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -43,7 +44,7 @@ struct Cli {
   std::string solution;
   mrpt::math::TPose2D start, goal;
   std::optional<double> startZ, goalZ;
-  std::optional<double> corridor;  ///< meters to each side; none: said nothing
+  std::optional<double> corridor;  ///< of tiles, meters to each side; none: said nothing
   /** All but the vehicle. */
   semantic_planning::PlannerOptions planner;
   Outputs outputs;
@@ -68,8 +69,8 @@ Cli::Cli(CLI::App& app) : outputs(app) {
       ->type_name("NAME")
       ->needs("--weights");
   app.add_option("--corridor", corridor,
-                 "Plan within this distance of a coarse path, m; without: 30 for folders of tiles, "
-                 "inf (everywhere) for other maps")
+                 "Of a folder of tiles, read those within this distance of the line from start to "
+                 "goal, m; without: half of its length, at least 100")
       ->check(isNumber(strict_files::above(0).orInfinite()));
   outputs.add(app, output, "FOLDER", "Folder of the results, created if need be")->required();
   planner.shorten = true;
@@ -110,38 +111,25 @@ void printSummary(const PlanResult& plan, const semantic_types::ClassTable& clas
             << plan.search.edgesEvaluated << " of them evaluated\n";
 }
 
-/** None: all ground is looked at. */
-std::optional<Corridor> corridorOf(const Cli& cli, StoredMap& stored,
-                                   const colored_graph::ClassOrder& order) {
-  constexpr double kAll = std::numeric_limits<double>::infinity();
-  CorridorTask task{cli.start, cli.goal, cli.startZ, cli.goalZ};
-  task.width = cli.corridor.value_or(stored.folder() ? task.width : kAll);
-  if (std::isinf(task.width)) return std::nullopt;
-  const TileProgress progress({&stored}, "Looking for a corridor");
-  return findCorridor(stored.tree(), order, cli.planner, task);
-}
-
-/** What of a folder's map a plan in the corridor needs. */
-std::unique_ptr<StoredMap> mapOf(const Cli& cli, const Corridor& corridor) {
-  return inputs::openMap(cli.map, cli.memory, [&](const Eigen::AlignedBox3d& cube) {
-    return corridor.mayNeed({cube.min().x(), cube.min().y()}, {cube.max().x(), cube.max().y()});
-  });
+/** Whether a tile of a folder's map is near the line from start to goal. */
+bool isWanted(const Cli& cli, const Eigen::AlignedBox3d& cube) {
+  const Eigen::Vector2d start(cli.start.x, cli.start.y),
+      way(cli.goal.x - cli.start.x, cli.goal.y - cli.start.y);
+  const double width = cli.corridor.value_or(std::max(100.0, way.norm() / 2));
+  const Eigen::Vector2d center = cube.center().head<2>() - start;
+  const double along = std::clamp(center.dot(way) / std::max(1e-9, way.squaredNorm()), 0.0, 1.0);
+  return (center - along * way).norm() - cube.sizes().head<2>().norm() / 2 <= width;
 }
 
 int run(Cli& cli) {
   cli.outputs.checkFolder(cli.output, kFiles);
-  auto stored = inputs::openMap(cli.map, cli.memory);
-  const auto order = loadClassOrder(cli.order, stored->tree().classes());
+  const auto stored = inputs::openMap(
+      cli.map, cli.memory, [&](const Eigen::AlignedBox3d& cube) { return isWanted(cli, cube); });
+  SemanticOcTree& map = stored->tree();
+  const auto order = loadClassOrder(cli.order, map.classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
   measuring::Stopwatch watch;
-  const auto corridor = corridorOf(cli, *stored, order);
-  if (corridor && stored->folder()) {
-    stored.reset();  // first, so that what it has in memory can be taken again
-    stored = mapOf(cli, *corridor);
-  }
-  SemanticOcTree& map = stored->tree();
-  const double searchingCorridor = watch.lap();
-  // Now, for what that takes is free again before the ground needs it.
+  // First, for what that takes is free again before the ground needs it.
   std::optional<TileProgress> progress(std::in_place, std::vector{stored.get()}, "Drawing the map");
   MapCanvas canvas = MapCanvas::ofMap(map, {});
   watch.lap();
@@ -156,7 +144,7 @@ int run(Cli& cli) {
   }
   const double abstraction = watch.lap();
   progress.emplace(std::vector{stored.get()}, "Finding the ground");
-  SemanticPlanner planner(map, order, cli.planner, corridor);
+  SemanticPlanner planner(map, order, cli.planner);
   const double ground = watch.lap();
   progress.reset();
   std::optional<Progress> planning(std::in_place, "Planning", 0);
@@ -164,7 +152,6 @@ int run(Cli& cli) {
   const PlanResult plan = planner.plan(cli.start, cli.goal, cli.startZ, cli.goalZ);
   planning.reset();
   nlohmann::json report = toJson(plan, order, map.classes());
-  report["milliseconds"]["corridor"] = searchingCorridor;
   report["milliseconds"]["abstraction"] = abstraction;
   report["milliseconds"]["ground"] = ground;
   write(cli, std::move(canvas), planner, plan, report);

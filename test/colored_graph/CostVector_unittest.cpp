@@ -6,8 +6,7 @@
 
 #include "CostVector.h"
 
-using colored_graph::CostVector;
-using Cost = CostVector<4>;
+using Cost = colored_graph::CostVector;
 
 namespace {
 

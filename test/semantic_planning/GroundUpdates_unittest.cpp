@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "PaintedGround.h"
+#include "ground/GroundTiles.h"
 
 using namespace painted_ground;
 
@@ -82,7 +83,7 @@ TEST(Ground, ofALargeMapFollowsChangesHereAndThere) {
   }
 }
 
-TEST(Ground, withinSomeTilesIsThatOfTheWholeMap) {
+TEST(Ground, squareBySquareIsThatOfTheWholeMap) {
   PaintedWorld world;
   world.floor(-12, 12, -12, 12, PaintedWorld::Road);
   addRubble(world, 3, 400);
@@ -98,12 +99,13 @@ TEST(Ground, withinSomeTilesIsThatOfTheWholeMap) {
     for (const Column& tile : whole.tiles())
       if (random() % 3 == 0) tiles.push_back(tile);
     std::sort(tiles.begin(), tiles.end());
-    const Ground part(map, VehicleOptions(), {}, anyClass(), tiles);
+    GroundTiles part(map, {VehicleOptions(), {}, anyClass(), map.getResolution()});
+    part.readSquares(tiles);
     std::size_t surfaces = 0;
     for (int x = -100; x < 100; ++x)
       for (int y = -100; y < 100; ++y) {
         const Column c{kOrigin + x, kOrigin + y};
-        const SurfaceRange s = whole.surfaces(c), t = part.surfaces(c);
+        const SurfaceRange s = whole.surfaces(c), t = surfacesAt(part.surfaces(), c);
         surfaces += static_cast<std::size_t>(t.last - t.first);
         if (std::binary_search(tiles.begin(), tiles.end(), tileOf(c)))
           ASSERT_TRUE(std::equal(s.begin(), s.end(), t.begin(), t.end())) << x << ' ' << y;
@@ -112,20 +114,6 @@ TEST(Ground, withinSomeTilesIsThatOfTheWholeMap) {
       }
     EXPECT_GT(surfaces, 1000u);
   }
-}
-
-TEST(Ground, withinSomeTilesDoesNotFollowChanges) {
-  PaintedWorld world;
-  world.floor(-2, 2, -2, 2, PaintedWorld::Road);
-  SemanticOcTree& map = world.map();
-  semantic_octree::MapFollower follower = map.follow();
-  follower.skipTiles();
-  Ground ground(map, VehicleOptions(), {}, anyClass(),
-                std::vector<Column>{tileOf({kOrigin, kOrigin})});
-  EXPECT_TRUE(ground.update(follower.tiles()).empty());
-  world.voxel(0, 0, 0, PaintedWorld::Wall);
-  world.map();
-  EXPECT_THROW(ground.update(follower.tiles()), std::logic_error);
 }
 
 TEST(Ground, aHoleThatNoBeamEnteredIsFilledAfterAnUpdateAsInTheGroundReadAnew) {

@@ -47,7 +47,8 @@ TEST(Ground, knowsWhatIsOccupiedInAColumnBetweenTwoHeights) {
   PaintedWorld world;
   addRubble(world, 2, 800);
   const SemanticOcTree& map = world.map();
-  const Ground ground = groundOf(map), part(map, {}, {}, anyClass(), std::vector<Column>{});
+  const Ground ground = groundOf(map);
+  const Ground part = ground.frozen();
   std::mt19937 random(3);
   int numOccupied = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -3,29 +3,21 @@
 #include <colored_graph/ColoredAStar.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include "CostVector.h"
-#include "SearchParts.h"
 
 namespace colored_graph {
-
-/** For cost vectors of any size. */
-class ColoredReplanner::Impl {
- public:
-  virtual ~Impl() = default;
-  virtual PathResult solve() = 0;
-  virtual void moveStart(VertexId start) = 0;
-};
 
 /** LPA* over cost vectors, from the goal towards the start. The names g and rhs are the paper's.
  *
  * Invariants between calls: rhs(v) = min over edges (v,w) of cost + g(w), 0 at the goal; node.next
  * gives this minimum; v is queued exactly if g(v) != rhs(v). */
-template <int N>
-class ColoredReplanner::Search : public Impl {
+class ColoredReplanner::Search {
  public:
   Search(ColoredGraph& graph, VertexId start, VertexId goal, const CostModel& model,
          const SearchOptions& options)
@@ -38,74 +30,67 @@ class ColoredReplanner::Search : public Impl {
   Search(const Search&) = delete;
   Search& operator=(const Search&) = delete;
 
-  void moveStart(VertexId start) override {
+  void moveStart(VertexId start) {
     if (start == m_start) return;
     m_start = start;
     m_startMoved = true;
   }
 
-  PathResult solve() override {
+  PathResult solve() {
     m_statistics = {};
     PathResult result;
-    const auto missing = missingEnd(m_graph, m_start, m_goal);
-    const SearchStatus status = missing ? *missing : repairOrForget();
-    if (status == SearchStatus::Found) {
-      result = assemblePath(m_graph, m_start, bestEdges());
-      result.cost = m_costs.parts(m_nodes[m_start].g);
+    try {
+      if (!m_graph.containsVertex(m_start))
+        result.status = SearchStatus::StartNotInGraph;
+      else if (!m_graph.containsVertex(m_goal))
+        result.status = SearchStatus::GoalNotInGraph;
+      else
+        result = repair();
+    } catch (const Cancelled&) {
+      result.status = SearchStatus::Cancelled;
+    } catch (...) {
+      m_nodes.clear();  // a user's function that throws may leave the invariants broken
+      throw;
     }
-    result.status = status;
     result.statistics = m_statistics;
     return result;
   }
 
  private:
-  using Cost = CostVector<N>;
-
-  struct Node {
-    Cost g = Cost::infinite();
-    Cost rhs = Cost::infinite();
-    Length distance = 0;      // lower bound of the length from the start number `distanceOf`
-    unsigned distanceOf = 0;  // 0: none yet
-    Incidence next{kNoVertex, kNoEdge};
-    const Cost& least() const { return std::min(g, rhs); }
-  };
+  struct Cancelled {};
 
   /** [min(g, rhs) + h; min(g, rhs)]: since h is a length, the smaller second vector is the one with
    * the larger h. */
   struct Key {
-    Cost estimate;
-    Length distance;
-    bool operator==(const Key& o) const { return distance == o.distance && estimate == o.estimate; }
+    CostVector estimate;
+    Length distance = 0;
     bool operator<(const Key& o) const {
       const int order = compare(estimate, o.estimate);
       return order != 0 ? order < 0 : distance > o.distance;
     }
   };
 
-  /** A user's function that throws may leave the invariants broken: the next call starts over. */
-  SearchStatus repairOrForget() {
-    try {
-      return repair();
-    } catch (...) {
-      m_nodes.clear();
-      throw;
-    }
-  }
+  struct Node {
+    CostVector g = CostVector::infinite();
+    CostVector rhs = CostVector::infinite();
+    Length distance = 0;      // lower bound of the length from the start number `distanceOf`
+    unsigned distanceOf = 0;  // 0: none yet
+    Incidence next{kNoVertex, kNoEdge};
+    Key key;  // in the queue
+    bool isQueued = false;
+  };
 
-  SearchStatus repair() {
-    StopCheck stop(m_options);
+  PathResult repair() {
     catchUp();
-    bool again = true;
-    while (again) {
-      if (const auto stopped = computeShortestPath(stop)) return *stopped;
-      if (m_nodes[m_start].g.isInfinite())
-        return diagnose(m_graph, m_start, m_goal, [this](const Incidence& i) {
-          return !m_costs(i.edge, i.neighbor).isInfinite();
-        });
-      if (const auto stopped = evaluateAlongPath(stop, again)) return *stopped;
-      if (again) lookFirst();
+    for (;; lookFirst()) {
+      computeShortestPath();
+      if (m_nodes[m_start].g.isInfinite()) {
+        PathResult none;
+        none.status = whyNot();
+        return none;
+      }
+      if (!turnsOutWorseOnPath()) return path();
     }
-    return SearchStatus::Found;
   }
 
   /** Edges on best paths alone are the fewest, but each that is worse than its bound may make a
@@ -125,7 +110,6 @@ class ColoredReplanner::Search : public Impl {
       startOver();
     } else {
       m_nodes.resize(std::max<std::size_t>(m_nodes.size(), m_graph.vertexIdEnd()));
-      m_queue.growTo(m_nodes.size());
       if (m_startMoved) rekey();
       repairChanged(log);
     }
@@ -135,8 +119,8 @@ class ColoredReplanner::Search : public Impl {
 
   void startOver() {
     m_nodes.assign(m_graph.vertexIdEnd(), Node());
-    m_queue.reset(m_nodes.size());
-    m_nodes[m_goal].rhs = Cost();
+    m_queue.clear();
+    m_nodes[m_goal].rhs = CostVector();
     enqueue(m_goal);
   }
 
@@ -144,7 +128,10 @@ class ColoredReplanner::Search : public Impl {
    * vertices asks less of the lower bound: it only has to be consistent from each start. */
   void rekey() {
     ++m_startNumber;
-    m_queue.rekey([this](VertexId v) { return key(v); });
+    for (const auto& [key, v] : std::exchange(m_queue, {})) {
+      m_nodes[v].isQueued = false;
+      enqueue(v);
+    }
   }
 
   void repairChanged(const ChangeLog& log) {
@@ -157,29 +144,29 @@ class ColoredReplanner::Search : public Impl {
       if (m_graph.containsVertex(v))
         repairRhs(v);
       else
-        forget(v);
+        remove(v);
     }
   }
 
-  /** A removed vertex: nothing hangs on it, since its neighbors are in the change log too. */
-  void forget(VertexId v) {
-    m_queue.remove(v);
+  /** Nothing hangs on it, since its neighbors are in the change log too. */
+  void remove(VertexId v) {
+    dequeue(v);
     m_nodes[v] = Node();
   }
 
   // --- LPA*
 
-  std::optional<SearchStatus> computeShortestPath(StopCheck& stop) {
+  void computeShortestPath() {
     while (!m_queue.empty()) {
       const Node& start = m_nodes[m_start];
-      const bool consistent = start.g == start.rhs;
-      if (consistent && !(m_queue.top().key < key(m_start))) break;
-      const VertexId v = m_queue.top().vertex;
-      const auto stopped = mayEvaluate(v) ? stop.now() : stop.inLoop();
-      if (stopped) return stopped;
-      expand(v);
+      if (start.g == start.rhs && !(m_queue.begin()->first < key(m_start))) break;
+      checkCancelled();
+      expand(m_queue.begin()->second);
     }
-    return std::nullopt;
+  }
+
+  void checkCancelled() const {
+    if (m_options.cancelled && m_options.cancelled()) throw Cancelled();
   }
 
   /** Whether its edge is looked at before anything hangs on it. */
@@ -194,10 +181,10 @@ class ColoredReplanner::Search : public Impl {
     ++m_statistics.expansions;
     if (node.rhs < node.g) {
       node.g = node.rhs;
-      m_queue.remove(v);
+      dequeue(v);
       for (const Incidence& i : m_graph.incident(v)) lowerRhs(i, v);
     } else {
-      node.g = Cost::infinite();
+      node.g = CostVector::infinite();
       enqueue(v);
       for (const Incidence& i : m_graph.incident(v))
         if (m_nodes[i.neighbor].next.neighbor == v) repairRhs(i.neighbor);
@@ -207,9 +194,9 @@ class ColoredReplanner::Search : public Impl {
   /** A vertex whose g fell offers itself to a neighbor. */
   void lowerRhs(const Incidence& i, VertexId next) {
     Node& node = m_nodes[i.neighbor];
-    const Cost& before = m_nodes[next].g;
+    const CostVector& before = m_nodes[next].g;
     if (node.rhs < before) return;  // whatever the edge costs
-    const Cost cost = before + m_costs(i.edge, next);
+    const CostVector cost = before + m_costs(i.edge, next);
     if (!(cost < node.rhs)) return;
     node.rhs = cost;
     node.next = {next, i.edge};
@@ -226,12 +213,12 @@ class ColoredReplanner::Search : public Impl {
   }
 
   /** The edge with the least cost + g, and that cost; ties to the smaller vertex, then edge. */
-  std::pair<Cost, Incidence> bestStep(VertexId v) const {
-    std::pair<Cost, Incidence> best{Cost::infinite(), {kNoVertex, kNoEdge}};
+  std::pair<CostVector, Incidence> bestStep(VertexId v) const {
+    std::pair<CostVector, Incidence> best{CostVector::infinite(), {kNoVertex, kNoEdge}};
     for (const Incidence& i : m_graph.incident(v)) {
-      const Cost& after = m_nodes[i.neighbor].g;
+      const CostVector& after = m_nodes[i.neighbor].g;
       if (best.first < after || after.isInfinite()) continue;  // whatever the edge costs
-      const Cost cost = after + m_costs(i.edge, i.neighbor);
+      const CostVector cost = after + m_costs(i.edge, i.neighbor);
       const bool tie =
           cost == best.first && !cost.isInfinite() &&
           std::tie(i.neighbor, i.edge) < std::tie(best.second.neighbor, best.second.edge);
@@ -242,10 +229,16 @@ class ColoredReplanner::Search : public Impl {
 
   /** Puts v into the queue with its present key, or out of it, as its consistency asks. */
   void enqueue(VertexId v) {
-    if (m_nodes[v].g != m_nodes[v].rhs)
-      m_queue.set(v, key(v));
-    else
-      m_queue.remove(v);
+    dequeue(v);
+    Node& node = m_nodes[v];
+    if (node.g == node.rhs) return;
+    node.key = key(v);
+    m_queue.insert({node.key, v});
+    node.isQueued = true;
+  }
+  void dequeue(VertexId v) {
+    if (m_nodes[v].isQueued) m_queue.erase({m_nodes[v].key, v});
+    m_nodes[v].isQueued = false;
   }
 
   Key key(VertexId v) {
@@ -254,7 +247,7 @@ class ColoredReplanner::Search : public Impl {
       node.distanceOf = m_startNumber;
       node.distance = m_options.lengthBound ? m_options.lengthBound(m_start, v) : 0;
     }
-    return {node.least() + m_costs.ofLength(node.distance), node.distance};
+    return {std::min(node.g, node.rhs) + m_costs.ofLength(node.distance), node.distance};
   }
 
   // --- The path
@@ -275,12 +268,64 @@ class ColoredReplanner::Search : public Impl {
 
   bool isUnevaluated(EdgeId e) const { return m_graph.edge(e).state == EdgeState::Unevaluated; }
 
+  PathResult path() const {
+    PathResult result;
+    result.status = SearchStatus::Found;
+    result.vertices = {m_start};
+    result.edges = bestEdges();
+    result.cost = m_costs.parts(m_nodes[m_start].g);
+    result.lengthPerClass.assign(m_graph.classes(), 0);
+    for (const EdgeId e : result.edges) {
+      const Edge& edge = m_graph.edge(e);
+      result.vertices.push_back(edge.other(result.vertices.back()));
+      for (const Stretch& s : edge.profile) result.lengthPerClass[s.classId] += s.length;
+    }
+    return result;
+  }
+
+  SearchStatus whyNot() const {
+    const auto isCounted = [this](const Incidence& i) {
+      return !m_costs(i.edge, i.neighbor).isInfinite();
+    };
+    const auto isOpen = [this](const Incidence& i) {
+      const Edge& edge = m_graph.edge(i.edge);
+      return edge.state != EdgeState::Blocked && edge.leadsTo(i.neighbor);
+    };
+    return isConnected(isCounted) ? SearchStatus::CostOverflow
+           : isConnected(isOpen)  ? SearchStatus::OnlyForbidden
+                                  : SearchStatus::NotConnected;
+  }
+
+  /** Whether edges that are passable lead from start to goal. */
+  template <class Passable>
+  bool isConnected(Passable passable) const {
+    std::vector<bool> seen(m_graph.vertexIdEnd(), false);
+    std::vector<VertexId> open{m_start};
+    seen[m_start] = true;
+    while (!open.empty() && !seen[m_goal]) {
+      const VertexId v = open.back();
+      open.pop_back();
+      for (const Incidence& i : m_graph.incident(v)) {
+        if (seen[i.neighbor] || !passable(i)) continue;
+        seen[i.neighbor] = true;
+        open.push_back(i.neighbor);
+      }
+    }
+    return seen[m_goal];
+  }
+
   /** Evaluates an edge that leads to a vertex. \return whether it is worse than its lower bound;
    * then its ends are repaired */
   bool turnsOutWorse(EdgeId e, VertexId to) {
-    const Cost bound = m_costs(e, to);
+    if (!m_options.evaluate)
+      throw std::invalid_argument("SearchOptions: edge " + std::to_string(e) +
+                                  " is unevaluated, and there is no function to evaluate it");
+    const CostVector bound = m_costs(e, to);
     ++m_statistics.edgesEvaluated;
-    evaluateEdge(m_graph, e, m_options.evaluate);
+    if (std::optional<EdgeProfile> profile = m_options.evaluate(e))
+      m_graph.setProfile(e, std::move(*profile));
+    else
+      m_graph.setBlocked(e);
     m_seen = m_graph.changes().end();
     if (m_costs(e, to) == bound) return false;
     repairRhs(m_graph.edge(e).a);
@@ -288,19 +333,17 @@ class ColoredReplanner::Search : public Impl {
     return true;
   }
 
-  /** Evaluates the path's edges from the start on; stops, and asks for another search, at the first
-   * that is worse than its lower bound. */
-  std::optional<SearchStatus> evaluateAlongPath(const StopCheck& stop, bool& again) {
-    again = false;
+  /** Evaluates the path's edges from the start on, up to the first that is worse than its lower
+   * bound. \return whether there is one */
+  bool turnsOutWorseOnPath() {
     VertexId to = m_start;
     for (const EdgeId e : bestEdges()) {
       to = m_graph.edge(e).other(to);
       if (!isUnevaluated(e)) continue;
-      if (const auto stopped = stop.now()) return stopped;
-      again = turnsOutWorse(e, to);
-      if (again) break;
+      checkCancelled();
+      if (turnsOutWorse(e, to)) return true;
     }
-    return std::nullopt;
+    return false;
   }
 
   ColoredGraph& m_graph;
@@ -308,9 +351,9 @@ class ColoredReplanner::Search : public Impl {
   const VertexId m_goal;
   const CostModel m_model;
   const SearchOptions m_options;
-  const EdgeCosts<N> m_costs;
+  const EdgeCosts m_costs;
   std::vector<Node> m_nodes;
-  VertexQueue<Key> m_queue;
+  std::set<std::pair<Key, VertexId>> m_queue;
   std::uint64_t m_seen = 0;
   bool m_startMoved = false;
   unsigned m_startNumber = 1;
@@ -334,24 +377,44 @@ PathResult ColoredGraphSearch::replan(ColoredGraph& graph, VertexId start, Verte
 }
 
 ColoredReplanner::ColoredReplanner(ColoredGraph& graph, VertexId start, VertexId goal,
-                                   const CostModel& model, const SearchOptions& options) {
-  model.validate(graph);
-  m_impl = withVectorSize(model, [&](auto size) -> std::unique_ptr<Impl> {
-    return std::make_unique<Search<size()>>(graph, start, goal, model, options);
-  });
+                                   const CostModel& model, const SearchOptions& options)
+    : m_search(std::make_unique<Search>(graph, start, goal, model, options)) {
+  if (model.order.classes() != graph.classes())
+    throw std::invalid_argument("CostModel: order of " + std::to_string(model.order.classes()) +
+                                " classes for a graph with " + std::to_string(graph.classes()));
 }
 
 ColoredReplanner::~ColoredReplanner() = default;
 ColoredReplanner::ColoredReplanner(ColoredReplanner&&) noexcept = default;
 ColoredReplanner& ColoredReplanner::operator=(ColoredReplanner&&) noexcept = default;
 
-PathResult ColoredReplanner::solve() { return m_impl->solve(); }
+PathResult ColoredReplanner::solve() { return m_search->solve(); }
 
-void ColoredReplanner::moveStart(VertexId start) { m_impl->moveStart(start); }
+void ColoredReplanner::moveStart(VertexId start) { m_search->moveStart(start); }
 
 PathResult findColoredPath(ColoredGraph& graph, VertexId start, VertexId goal,
                            const CostModel& model, const SearchOptions& options) {
   return ColoredReplanner(graph, start, goal, model, options).solve();
+}
+
+const char* describe(SearchStatus status) {
+  switch (status) {
+    case SearchStatus::Found:
+      return "path found";
+    case SearchStatus::StartNotInGraph:
+      return "the start is not in the graph";
+    case SearchStatus::GoalNotInGraph:
+      return "the goal is not in the graph";
+    case SearchStatus::NotConnected:
+      return "start and goal are not connected";
+    case SearchStatus::OnlyForbidden:
+      return "every path goes through a forbidden class";
+    case SearchStatus::CostOverflow:
+      return "the cost of every path is too large to be represented";
+    case SearchStatus::Cancelled:
+      return "the search was cancelled";
+  }
+  throw std::out_of_range("a search status without a sentence");
 }
 
 }  // namespace colored_graph

@@ -36,10 +36,8 @@ class ColoredReplanner {
   void moveStart(VertexId start);
 
  private:
-  class Impl;
-  template <int N>
   class Search;
-  std::unique_ptr<Impl> m_impl;
+  std::unique_ptr<Search> m_search;
 };
 
 }  // namespace colored_graph

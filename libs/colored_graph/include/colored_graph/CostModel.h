@@ -30,8 +30,6 @@ struct CostModel {
 
   /** Numbers in the cost of a path. */
   int components() const { return order.ranks() + (tolls ? 1 : 0); }
-  /** \throw std::invalid_argument the order is one of more or fewer classes than the graph has. */
-  void validate(const ColoredGraph& graph) const;
 };
 
 }  // namespace colored_graph

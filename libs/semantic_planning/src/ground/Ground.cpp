@@ -100,13 +100,11 @@ GroundShape::GroundShape(const VehicleOptions& vehicle, const GroundOptions& opt
 }
 
 Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
-               const GroundOptions& options, const colored_graph::ClassOrder& order,
-               const std::optional<std::vector<Column>>& within)
+               const GroundOptions& options, const colored_graph::ClassOrder& order)
     : m_map(map),
       m_voxelSize(map.getResolution()),
       m_clearance(vehicle.clearance),
-      m_perMeter(1 / m_voxelSize),
-      m_isLimited(within) {
+      m_perMeter(1 / m_voxelSize) {
   vehicle.validate();
   options.validate();
   checkOrder(map, order);
@@ -114,11 +112,7 @@ Ground::Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions&
   m_step = shape.step;
   m_largestClearance = shape.largestClearance;
   m_tiles = std::make_unique<GroundTiles>(map, shape);
-  if (within) {
-    m_tiles->readWithin(*within);
-  } else {
-    m_tiles->read(TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find());
-  }
+  m_tiles->read(TileSearch(map, std::max(kTileEdge, reachOfGapFills(shape))).find());
 }
 
 Ground::Ground(const Ground& of, std::unique_ptr<GroundTiles> tiles)
@@ -128,8 +122,7 @@ Ground::Ground(const Ground& of, std::unique_ptr<GroundTiles> tiles)
       m_clearance(of.m_clearance),
       m_perMeter(of.m_perMeter),
       m_step(of.m_step),
-      m_largestClearance(of.m_largestClearance),
-      m_isLimited(true) {}
+      m_largestClearance(of.m_largestClearance) {}
 
 Ground Ground::frozen() const { return Ground(*this, m_tiles->frozen()); }
 
@@ -137,8 +130,6 @@ Ground::~Ground() = default;
 Ground::Ground(Ground&&) noexcept = default;
 
 std::vector<Column> Ground::update(const semantic_octree::TileChange& change) {
-  if (m_isLimited && (change.all || !change.tiles.empty()))
-    throw std::logic_error("Ground: a part of a map's ground does not follow changes");
   std::vector<Column> tiles = change.all ? m_tiles->known() : std::vector<Column>();
   for (const octomap::OcTreeKey& key : change.tiles) tiles.push_back(tileOf({key[0], key[1]}));
   sortOut(tiles);
@@ -146,7 +137,7 @@ std::vector<Column> Ground::update(const semantic_octree::TileChange& change) {
 }
 
 std::vector<Column> Ground::assume(const std::vector<GroundPoint>& points) {
-  if (m_isLimited || m_map.isReadOnly()) return {};
+  if (m_map.isReadOnly()) return {};
   std::map<Column, std::array<std::optional<Surface>, kTileColumns>> tiles;
   for (const GroundPoint& p : points) tiles[tileOf(p.column)][indexInTile(p.column)] = p.surface;
   SurfaceGrid ground;

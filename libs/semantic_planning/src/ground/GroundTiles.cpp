@@ -129,7 +129,7 @@ void GroundTiles::read(const std::vector<Column>& tiles) {
   if (tiles.size() < kManyTiles)
     finished(updateSurfaces(tiles));
   else
-    readWithin(tiles);
+    readSquares(tiles);
   forgetStages();
 }
 
@@ -229,7 +229,7 @@ void GroundTiles::recallStages(const std::vector<Column>& tiles) {
   });
 }
 
-void GroundTiles::readWithin(const std::vector<Column>& tiles) {
+void GroundTiles::readSquares(const std::vector<Column>& tiles) {
   std::map<Column, std::vector<Column>> squares;
   for (const Column& tile : tiles) squares[squareOf(tile)].push_back(tile);
   for (const auto& [square, within] : squares) {

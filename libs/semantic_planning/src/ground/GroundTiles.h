@@ -30,6 +30,9 @@ class GroundTiles {
 
   /** In the beginning. \param tiles all in which there may be ground */
   void read(const std::vector<Column>& tiles);
+  /** In these tiles, those of the whole map. The stages before are made square by square and
+   * forgotten. */
+  void readSquares(const std::vector<Column>& tiles);
   /** \param tiles whose voxels may have changed \return tiles whose surfaces changed, sorted. */
   std::vector<Column> update(const std::vector<Column>& tiles);
 
@@ -37,10 +40,6 @@ class GroundTiles {
    * map saw no drop. What was assumed before is forgotten.
    * \return tiles whose surfaces changed, sorted. */
   std::vector<Column> assume(SurfaceGrid ground);
-
-  /** Instead of read(): has surfaces in these tiles only, those of the whole map. The stages before
-   * are made square by square and forgotten. */
-  void readWithin(const std::vector<Column>& tiles);
 
   /** The surfaces as they are now, without the stages before. */
   std::unique_ptr<GroundTiles> frozen() const;

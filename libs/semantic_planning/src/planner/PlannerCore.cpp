@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -74,14 +73,11 @@ struct PlannerCore::Sliced {
 };
 
 PlannerCore::PlannerCore(semantic_octree::SemanticOcTree& map,
-                         const colored_graph::ClassOrder& order, const PlannerOptions& options,
-                         const std::optional<Corridor>& corridor)
+                         const colored_graph::ClassOrder& order, const PlannerOptions& options)
     : m_map(map),
       m_follower(map.follow()),
       m_options(validated(options, map)),
-      m_isInCorridor(corridor),
-      m_ground(map, options.vehicle, options.ground, order,
-               corridor ? std::optional(corridor->tiles(map.getResolution())) : std::nullopt),
+      m_ground(map, options.vehicle, options.ground, order),
       m_checker(m_ground, options.vehicle, options.strict ? order.strict() : order),
       m_prices(m_checker.order()),
       m_kept(m_checker, m_prices),
@@ -199,10 +195,9 @@ const CollisionChecker& PlannerCore::checkerOfSearch() {
 }
 
 void PlannerCore::makeRoadmap() {
-  constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   m_search->forget();
   const PlanningRegion region(m_ground, m_startPose->pose, m_goalPose->pose,
-                              m_isInCorridor ? kEverywhere : m_options.roadmap.buffer);
+                              m_options.roadmap.buffer);
   m_roadmap =
       std::make_unique<MapRoadmap>(m_map, m_checker, m_options.roadmap, *m_startPose, region);
   m_start = m_roadmap->roadmap().addQueryVertex(*m_startPose);

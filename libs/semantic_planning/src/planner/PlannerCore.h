@@ -33,7 +33,7 @@ class PlannerCore {
   };
 
   PlannerCore(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
-              const PlannerOptions& options, const std::optional<Corridor>& corridor);
+              const PlannerOptions& options);
   ~PlannerCore();
 
   /** \throw std::invalid_argument saying what has a number that is not finite */
@@ -117,7 +117,6 @@ class PlannerCore {
   semantic_octree::SemanticOcTree& m_map;
   semantic_octree::MapFollower m_follower;  ///< of what the ground has not read
   const PlannerOptions m_options;
-  const bool m_isInCorridor;
   Ground m_ground;
   CollisionChecker m_checker;
   std::optional<CollisionChecker> m_checkerOfSearch;  ///< none since the ground changed

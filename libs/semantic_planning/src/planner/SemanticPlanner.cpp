@@ -24,11 +24,10 @@ void PlannerOptions::validate() const {
 
 SemanticPlanner::SemanticPlanner(semantic_octree::SemanticOcTree& map,
                                  const colored_graph::ClassOrder& order,
-                                 const PlannerOptions& options,
-                                 const std::optional<Corridor>& corridor)
+                                 const PlannerOptions& options)
     : m_map(&map) {
   const ReadLock lock(map);
-  m_core = std::make_unique<PlannerCore>(map, order, options, corridor);
+  m_core = std::make_unique<PlannerCore>(map, order, options);
 }
 
 SemanticPlanner::~SemanticPlanner() = default;

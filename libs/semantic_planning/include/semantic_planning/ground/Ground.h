@@ -33,22 +33,18 @@ class Ground {
  public:
   /** \param map must outlive the ground.
    * \param order its classes are the map's ids, with semantic_types::kNoClass for unknown ground.
-   * \param within tiles (of kTileEdge x kTileEdge columns) in which there is ground. There it is
-   * what it is without this limit, and little more of the map is read. Without: all.
    * \throw std::invalid_argument bad options, or an order of other classes. */
   Ground(const semantic_octree::SemanticOcTree& map, const VehicleOptions& vehicle,
-         const GroundOptions& options, const colored_graph::ClassOrder& order,
-         const std::optional<std::vector<Column>>& within = {});
+         const GroundOptions& options, const colored_graph::ClassOrder& order);
   ~Ground();
   Ground(Ground&&) noexcept;
 
   /** Reads again what changed. \return the tiles (of kTileEdge x kTileEdge columns) whose surfaces
-   * changed in anything.
-   * \throw std::logic_error something changed, and the ground was made within some tiles only */
+   * changed in anything. */
   std::vector<Column> update(const semantic_octree::TileChange& change);
   /** Takes it that there is ground in these columns where the map knows none and saw no drop, in
-   * place of what was assumed before. Not in a ground that was made within some tiles only, nor in
-   * that of a map that is read only. \return as update() */
+   * place of what was assumed before. Not in the ground of a map that is read only.
+   * \return as update() */
   std::vector<Column> assume(const std::vector<GroundPoint>& points);
 
   const semantic_octree::SemanticOcTree& map() const { return m_map; }
@@ -106,7 +102,6 @@ class Ground {
   double m_voxelSize, m_clearance;
   double m_perMeter;  ///< voxels, as keyOf() of semantic_octree has them: it divides each time
   int m_step, m_largestClearance;
-  bool m_isLimited;
 };
 
 /** How high the origin of a robot's frame is above the ground. REP 105 lets base_link be anywhere

@@ -3,7 +3,6 @@
 #include <colored_graph/GraphSearch.h>
 #include <semantic_octree/SemanticOcTree.h>
 #include <semantic_planning/ground/Ground.h>
-#include <semantic_planning/planner/Corridor.h>
 #include <semantic_planning/planner/PlanResult.h>
 #include <semantic_planning/roadmap/Roadmap.h>
 #include <semantic_planning/roadmap/RoadmapOptions.h>
@@ -51,22 +50,20 @@ class PlannerCore;
  *       plan = planner.replan(pose());
  *     }
  *
- * A plan to another goal makes a roadmap of its own. What does not depend on start and goal is kept
- * until the map changes there: points for vertices, but not in a corridor, where memory is short.
- * Answers are those of a new planner. One that runs out of memory, or whose `cancelled` throws, is
- * broken: all further calls throw std::logic_error. Not thread safe. While a call reads the map,
- * another thread that changes it gets std::logic_error, and the other way round (ReadLock). A map
- * may have any number of planners, and other readers of its changes (MapFollower). */
+ * A plan to another goal makes a roadmap of its own. Answers are those of a new planner. One that
+ * runs out of memory, or whose `cancelled` throws, is broken: all further calls throw
+ * std::logic_error. Not thread safe. While a call reads the map, another thread that changes it
+ * gets std::logic_error, and the other way round (ReadLock). A map may have any number of planners,
+ * and other readers of its changes (MapFollower). */
 class SemanticPlanner {
  public:
   /** \param map must outlive the planner. With a roadmap of the tree (isOfTree) it has to keep
    * G-values (setAbstraction()). \param order over the map's class ids, 0 = unknown
-   * ground (loadClassOrder) \param corridor where ground is looked at, of a map that does not
-   * change (findCorridor()); vertices lie anywhere in it. Without: all ground.
+   * ground (loadClassOrder)
    * \throw std::invalid_argument bad options, or an order of other classes
    * \throw std::logic_error the map keeps no G-values and the roadmap needs them. */
   SemanticPlanner(semantic_octree::SemanticOcTree& map, const colored_graph::ClassOrder& order,
-                  const PlannerOptions& options = {}, const std::optional<Corridor>& corridor = {});
+                  const PlannerOptions& options = {});
   ~SemanticPlanner();
   SemanticPlanner(SemanticPlanner&&) noexcept;
 
