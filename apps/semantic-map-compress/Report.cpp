@@ -267,8 +267,9 @@ std::string toCsv(const ordered_json& report) {
     for (const char* list : {"weights", "curve"}) solution.erase(list);
     if (solution["groups"].empty()) solution.erase("groups");
     solution["full"] = report["map"]["tree"];
+    const ordered_json flat = solution.flatten();
     std::string header, line;
-    for (const auto& [name, value] : solution.flatten().items()) {
+    for (const auto& [name, value] : flat.items()) {
       const std::string before = header.empty() ? "" : ",";
       header += before + csvField(name);
       line += before + (value.is_string() ? csvField(value) : value.is_null() ? "" : value.dump());

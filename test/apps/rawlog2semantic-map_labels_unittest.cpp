@@ -70,7 +70,7 @@ class CameraMapping : public Rawlog2SemanticMap {
 namespace fs = std::filesystem;
 
 TEST_F(CameraMapping, labelImagesOfACameraLabelTheScansOfAnotherSensor) {
-  for (const std::string source : {path("labels"), "front=" + path("labels")}) {
+  for (const std::string& source : {path("labels"), "front=" + path("labels")}) {
     const ProgramRun labeled = succeeded(run("camera.rawlog", {"--labels", source}));
     expectLabeledMap();
     EXPECT_EQ(summary()["observations"]["pictures"], 1);
