@@ -1,6 +1,8 @@
 // Writes a semantic octree map into files that other programs read.
 #include <map_operations/MapOperations.h>
 #include <map_pictures/MapPictures.h>
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/serialization/CArchive.h>
 #include <mrpt_compat/Drawing.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
@@ -9,7 +11,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -20,7 +21,7 @@
 #include <string>
 
 #include "Application.h"
-#include "CostGrid.h"
+#include "GridFiles.h"
 #include "inputs/Inputs.h"
 
 namespace semantic_map_export {
@@ -29,19 +30,18 @@ namespace {
 namespace fs = std::filesystem;
 using semantic_types::ClassTable;
 
-/** Makes .yaml files costs of driving, not occupancy. */
-struct CostOptions {
-  std::filesystem::path order,
-      vehicle;  ///< an empty order: occupancy; an empty vehicle: a small robot
-  CostMode mode = CostMode::Trinary;
-};
-
 struct ExportOptions {
-  bool colors = true;  ///< in .ot files
-  semantic_map::PointOptions points;
-  semantic_map::GridOptions grid;
+  bool colors = true;               ///< in .ot files
+  bool free = false;                ///< leaves, as points
   std::optional<double> maxHeight;  ///< of pictures, m
-  CostOptions costs;
+  std::optional<double> floor;      ///< of 2D grids, m
+  fs::path order;                   ///< makes .yaml files costs of driving; empty: occupancy
+  fs::path vehicle;                 ///< empty: a small robot
+  CostMode mode = CostMode::Trinary;
+
+  const char* endingOfPicture() const {
+    return order.empty() || mode == CostMode::Scale ? ".png" : ".pgm";
+  }
 };
 
 /** Writes a map into files of other formats. They take their names together, in commit(): what was
@@ -49,7 +49,7 @@ struct ExportOptions {
 class Exporter {
  public:
   /** The map must outlive the exporter. */
-  Exporter(const semantic_octree::SemanticOcTree& map, ExportOptions options)
+  Exporter(semantic_octree::SemanticOcTree& map, ExportOptions options)
       : m_map(map), m_options(std::move(options)) {}
 
   /** What can be written: endings with a few words. */
@@ -65,8 +65,7 @@ class Exporter {
   static std::vector<fs::path> filesOf(const fs::path& file, const ExportOptions& options) {
     std::vector<fs::path> files = {file};
     const char* beside = formatOf(file).beside;
-    if (file.extension() == ".yaml" && !options.costs.order.empty())
-      beside = endingOf(options.costs.mode);
+    if (file.extension() == ".yaml") beside = options.endingOfPicture();
     if (beside) files.push_back(fs::path(file).replace_extension(beside));
     return files;
   }
@@ -150,22 +149,15 @@ class Exporter {
       throw std::runtime_error(file.string() + ": cannot be written: " + std::strerror(errno));
   }
 
-  /** A floor at a wrong height makes obstacles of nearly everything: that is said. */
-  mrpt::maps::COccupancyGridMap2D grid() const {
-    auto grid = semantic_map::gridOf(m_map, m_options.grid);
-    constexpr double kFew = 0.1;
-    double free = 0, occupied = 0;
-    for (int y = 0; y < int(grid.getSizeY()); ++y)
-      for (int x = 0; x < int(grid.getSizeX()); ++x) {
-        const float p = grid.getCell(x, y);
-        (p > 0.5f ? free : occupied) += p == 0.5f ? 0 : 1;
-      }
-    if (m_options.grid.floor && free < kFew * occupied)
-      notes() << "Warning: " << std::lround(100 * occupied / (free + occupied))
-              << " % of the grid's known cells are obstacles. Is the ground at "
-              << *m_options.grid.floor << " m? Without --floor it is found in the map."
-              << std::endl;
-    return grid;
+  Grid grid() const {
+    semantic_planning::PlannerOptions options;
+    if (!m_options.vehicle.empty())
+      options.vehicle = semantic_planning::loadVehicle(m_options.vehicle);
+    if (m_options.order.empty()) return gridOf(m_map, options.vehicle, m_options.floor);
+    const auto order = semantic_planning::loadClassOrder(m_options.order, m_map.classes());
+    ground_costs::GroundCosts costs(m_map, order, options, {});
+    costs.takeLargestPart(m_options.floor);
+    return gridOf(costs);
   }
 
   void writeOctree(const fs::path& file) {
@@ -177,15 +169,18 @@ class Exporter {
     stage(file, [this](std::ostream& out) { writeBinaryOcTree(out, m_map); });
   }
   void writePoints(const fs::path& file) {
-    stage(file,
-          [this](std::ostream& out) { semantic_map::writePly(out, m_map, m_options.points); });
+    stage(file, [this](std::ostream& out) { semantic_map::writePly(out, m_map, m_options.free); });
   }
   void writeTable(const fs::path& file) {
-    stage(file,
-          [this](std::ostream& out) { semantic_map::writeCsv(out, m_map, m_options.points); });
+    stage(file, [this](std::ostream& out) { semantic_map::writeCsv(out, m_map, m_options.free); });
   }
   void writeGrid(const fs::path& file) {
-    stage(file, [this](std::ostream& out) { semantic_map::writeGridMap(out, grid()); });
+    mrpt::io::CMemoryStream bytes;
+    mrpt::serialization::archiveFrom(bytes) << occupancyOf(grid());
+    stage(file, [&bytes](std::ostream& out) {
+      out.write(static_cast<const char*>(bytes.getRawBufferData()),
+                std::streamsize(bytes.getTotalBytesCount()));
+    });
   }
 
   void writeClassMap(const fs::path& file) {
@@ -195,25 +190,13 @@ class Exporter {
           [&drawn](std::ostream& out) { out << drawn.worldFile; });
   }
 
-  void writeCosts(const fs::path& file) {
-    const CostOptions& costs = m_options.costs;
-    const auto order = semantic_planning::loadClassOrder(costs.order, m_map.classes());
-    const auto vehicle = costs.vehicle.empty() ? semantic_planning::VehicleOptions()
-                                               : semantic_planning::loadVehicle(costs.vehicle);
-    const fs::path picture = fs::path(file).replace_extension(endingOf(costs.mode));
-    const CostFiles files =
-        semantic_map_export::filesOf(costGridOf(m_map, order, vehicle, m_options.grid.floor),
-                                     costs.mode, picture.filename().string());
-    stage(file, [&files](std::ostream& out) { out << files.yaml; });
-    stage(picture, [&files](std::ostream& out) { out << files.picture; });
-  }
-
   void writeMapServer(const fs::path& file) {
-    if (!m_options.costs.order.empty()) return writeCosts(file);
-    const fs::path picture = fs::path(file).replace_extension(".png");
-    const auto files = semantic_map::mapServerFiles(grid(), picture.filename().string());
-    stage(file, [&files](std::ostream& out) { out << files.yaml; });
-    stage(picture, [&files](std::ostream& out) { out << files.png; });
+    const Grid made = grid();
+    const fs::path picture = fs::path(file).replace_extension(m_options.endingOfPicture());
+    const CostMode mode = m_options.mode;
+    stage(file, [&](std::ostream& out) { out << yamlOf(made, mode, picture.filename().string()); });
+    stage(picture,
+          [&](std::ostream& out) { out << pictureOf(made, mode, picture.extension().string()); });
   }
 
   void writeScene(const fs::path& file) {
@@ -228,7 +211,7 @@ class Exporter {
     semantic_map::writeScene(scene, staged(file));
   }
 
-  const semantic_octree::SemanticOcTree& m_map;
+  semantic_octree::SemanticOcTree& m_map;
   ExportOptions m_options;
   std::list<Staged> m_staged;
 };
@@ -236,7 +219,6 @@ class Exporter {
 struct Cli {
   fs::path map;
   std::vector<fs::path> files;
-  std::vector<std::string> ground;
   ExportOptions options;
   double memory = semantic_octree::MapFolderOptions().memory;
   Outputs outputs;
@@ -249,51 +231,25 @@ struct Cli {
              "File to write, may be given several times: " + Exporter::formats())
         ->required();
     app.add_flag("!--no-colors", options.colors, ".ot: an OcTree without colors");
-    app.add_flag("--free", options.points.free, ".ply, .csv: free leaves, too");
+    app.add_flag("--free", options.free, ".ply, .csv: free leaves, too");
     app.add_option("--max-height", options.maxHeight,
                    ".png, .3Dscene: nothing above this height, m");
-    addOptions(app, strict_files::OptionList::of(options.points.smoothing),
-               "Classes that neighbors tell (.ply, .csv)");
     const std::string kGrids = "2D grids (.gridmap, .yaml)";
-    addOptions(app, strict_files::OptionList::of(options.grid), kGrids);
-    app.add_option(
-           "--ground", ground,
-           "Class of the ground, may be given several times; without: the lowest voxel of each "
-           "column is ground")
-        ->type_name("CLASS")
-        ->allow_extra_args(false)
+    app.add_option("--vehicle", options.vehicle, "The vehicle (YAML); without: a small robot")
         ->group(kGrids);
-    addCosts(app);
-  }
-
- private:
-  void addCosts(CLI::App& app) {
+    app.add_option("--floor", options.floor,
+                   "Height of the ground, if it is flat, or of a storey's (--costs), m")
+        ->group(kGrids);
     auto* costs = app.add_option_group("Costs (.yaml, for nav2 and map_server)", "");
     auto* order = costs->add_option(
-        "--costs", options.costs.order,
+        "--costs", options.order,
         "Classes from best to worst (YAML): write costs of driving, not occupancy");
-    costs
-        ->add_option("--vehicle", options.costs.vehicle,
-                     "The vehicle (YAML); without: a small robot")
-        ->needs(order);
     addChoice<CostMode>(
-        costs->add_option("--mode", options.costs.mode,
-                          "Mode in which map_server reads the picture"),
+        costs->add_option("--mode", options.mode, "Mode in which map_server reads the picture"),
         {{"trinary", CostMode::Trinary}, {"scale", CostMode::Scale}, {"raw", CostMode::Raw}})
         ->needs(order);
   }
 };
-
-std::vector<semantic_types::ClassId> classesNamed(const std::vector<std::string>& names,
-                                                  const ClassTable& classes) {
-  std::vector<semantic_types::ClassId> ids;
-  for (const std::string& name : names) {
-    const auto id = classes.find(name);
-    if (!id) throw std::runtime_error("--ground: the map has no class '" + name + "'");
-    ids.push_back(*id);
-  }
-  return ids;
-}
 
 std::vector<fs::path> allFiles(const std::vector<fs::path>& files, const ExportOptions& options) {
   std::vector<fs::path> all;
@@ -307,16 +263,8 @@ bool hasScene(const std::vector<fs::path>& files) {
                      [](const fs::path& file) { return file.extension() == ".3Dscene"; });
 }
 
-/** A scene is made of a copy of the map; neighbors may lie in other tiles than what is gone
- * through. */
-void prepare(semantic_octree::StoredMap& map, const Cli& cli) {
-  const inputs::TileProgress progress({&map}, "Reading");
-  if (hasScene(cli.files)) map.folder()->checkFits();
-  if (cli.options.points.smoothing.neighborWeight > 0) map.folder()->bringAll();
-}
-
 void writeAll(const Cli& cli, semantic_octree::StoredMap& map, Exporter& exporter) {
-  if (map.folder()) prepare(map, cli);
+  if (map.folder() && hasScene(cli.files)) map.folder()->checkFits();  // it is of a copy
   for (const fs::path& file : cli.files) {
     const inputs::TileProgress progress({&map}, "Writing " + file.filename().string());
     exporter.write(file);
@@ -326,9 +274,7 @@ void writeAll(const Cli& cli, semantic_octree::StoredMap& map, Exporter& exporte
 int run(const Cli& cli) {
   cli.outputs.check(allFiles(cli.files, cli.options));
   const auto map = inputs::openMap(cli.map, cli.memory);
-  ExportOptions options = cli.options;
-  options.grid.ground = classesNamed(cli.ground, map->tree().classes());
-  Exporter exporter(map->tree(), options);
+  Exporter exporter(map->tree(), cli.options);
   writeAll(cli, *map, exporter);
   for (const fs::path& file : exporter.commit()) notes() << file.string() << '\n';
   return 0;

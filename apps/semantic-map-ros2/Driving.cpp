@@ -41,15 +41,14 @@ void GroundGrid::sayFrameHeight() {
 }
 
 void GroundGrid::publishAll(const ros2::Header& header) {
-  const double voxel = m_costs.voxelSize();
   ros2::OccupancyGrid message{};
   message.header = header;
   message.info.map_load_time = header.stamp;
-  message.info.resolution = static_cast<float>(voxel);
+  message.info.resolution = static_cast<float>(m_costs.voxelSize());
   message.info.width = std::uint32_t(m_box->width());
   message.info.height = std::uint32_t(m_box->height());
-  message.info.origin.position.x = m_costs.centerOf(m_box->low.x) - voxel / 2;
-  message.info.origin.position.y = m_costs.centerOf(m_box->low.y) - voxel / 2;
+  message.info.origin.position.x = m_costs.borderOf(m_box->low.x);
+  message.info.origin.position.y = m_costs.borderOf(m_box->low.y);
   message.info.origin.orientation.w = 1;
   ros2::refer(message.data, m_costs.cells());
   m_writes.write(message);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "Complaints.h"
-#include "GroundCosts.h"
 #include "Parameters.h"
+#include "ground_costs/GroundCosts.h"
 #include "ros2/Node.h"
 
 namespace semantic_map_ros2 {
@@ -17,7 +17,7 @@ namespace semantic_map_ros2 {
 class GroundGrid {
  public:
   /** Node and costs' map must outlive it. */
-  GroundGrid(ros2::Node& node, GroundCosts costs, std::string frame)
+  GroundGrid(ros2::Node& node, ground_costs::GroundCosts costs, std::string frame)
       : m_costs(std::move(costs)),
         m_frame(std::move(frame)),
         m_writes(node, "map", {true, true, 1}),
@@ -29,12 +29,12 @@ class GroundGrid {
   void publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot);
 
  private:
-  using Box = GroundCosts::Box;
+  using Box = ground_costs::GroundCosts::Box;
   void publishAll(const ros2::Header& header);
   void publishUpdate(const ros2::Header& header, const Box& changed);
   void sayFrameHeight();
 
-  GroundCosts m_costs;
+  ground_costs::GroundCosts m_costs;
   std::string m_frame;
   std::optional<Box> m_box;          ///< that was published
   std::optional<bool> m_seesGround;  ///< that was said

@@ -1,4 +1,7 @@
 #pragma once
+#include <map_streams/MapStream.h>
+#include <semantic_octree/MapFollower.h>
+
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -7,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "NodeMap.h"
+#include "OccupiedVoxels.h"
 #include "ros2/Node.h"
 
 namespace semantic_map_ros2 {
@@ -24,18 +27,23 @@ class MapMessages {
 
  private:
   using ClassId = semantic_types::ClassId;
+  /** What markers show of a block. */
+  struct Shown {
+    std::size_t hash = 0;
+    std::set<ClassId> classes;
+  };
   void publishMarkers(ros2::Stamp stamp);
-  void addMarkers(std::uint64_t block, const ros2::Header& header);
+  void addMarkers(int block, const ros2::Header& header);
   void publishPoints(ros2::Stamp stamp);
   void publishOctomap(ros2::Stamp stamp);
 
   semantic_octree::SemanticOcTree& m_map;
   std::string m_frame;
-  OccupiedVoxels m_voxels;
-  std::set<std::uint64_t> m_changed;                   ///< blocks that markers do not show yet
-  std::map<std::uint64_t, std::set<ClassId>> m_shown;  ///< by block
-  std::vector<ros2::Marker> m_markers;                 ///< of a message that is made
-  std::map<std::pair<std::uint64_t, ClassId>, std::vector<ros2::Point>> m_cubes;  ///< of it
+  semantic_octree::MapFollower m_follower;
+  std::set<int> m_changed;              ///< blocks that markers may not show yet
+  std::map<int, Shown> m_shown;         ///< by block
+  std::vector<ros2::Marker> m_markers;  ///< of a message that is made
+  std::map<std::pair<int, ClassId>, std::vector<ros2::Point>> m_cubes;  ///< of it, by block
   ros2::Publication<ros2::MarkerArray> m_writesMarkers;
   ros2::Publication<ros2::PointCloud2> m_writesPoints;
   ros2::Publication<ros2::Octomap> m_writesOctomap;
@@ -58,7 +66,7 @@ class TreeMessages {
  private:
   semantic_octree::SemanticOcTree& m_map;
   std::string m_frame;
-  TreeTeller m_teller;
+  std::optional<semantic_octree::TreeBroadcast> m_broadcast;  ///< while somebody reads
   ros2::Publication<ros2::Octomap> m_writesChanges, m_writesAll;
 };
 

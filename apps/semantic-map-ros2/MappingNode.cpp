@@ -23,6 +23,13 @@ constexpr auto kStep = 100ms, kLook = 50ms, kWait = 20ms;
 constexpr std::size_t kMostLatencies = 10'000;
 constexpr double kTransformsAge = 1;  // s: with an older one it is not known where the robot is
 
+/** x, y and heading of a pose. */
+Isometry3d upright(const Isometry3d& T) {
+  const auto pose = planar(T);
+  return Eigen::Translation3d(pose.x, pose.y, 0) *
+         Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ());
+}
+
 bool passed(steady_clock::time_point& since, steady_clock::duration period) {
   const auto now = steady_clock::now();
   if (now - since < period) return false;
@@ -58,9 +65,10 @@ MappingNode::MappingNode(const Parameters& parameters, const ros2::Arguments& ar
   if (node.order.empty()) return;
   const auto order = semantic_planning::loadClassOrder(node.order, map.classes());
   m_driving.emplace(m_node, m_parameters, m_mapper, order);
-  m_grid.emplace(
-      m_node, GroundCosts(map, order, m_parameters.navigation.planner, node.costsOf(order.ranks())),
-      node.mapFrame);
+  m_grid.emplace(m_node,
+                 ground_costs::GroundCosts(map, order, m_parameters.navigation.planner,
+                                           node.costsOf(order.ranks())),
+                 node.mapFrame);
 }
 
 void MappingNode::run(const StopRequest& stop) {
@@ -138,7 +146,11 @@ void MappingNode::onInitialPose(const ros2::PoseWithCovarianceStamped& message) 
   if (!T_odometry_robot.T_target_source)
     return m_complaints.say("an initial pose came before odometry", T_odometry_robot.problem);
   if (m_driving && m_driving->navigator()) m_driving->navigator()->mapper();  // waits
-  relocalize(m_mapper, *T_map_robot, *T_odometry_robot.T_target_source);
+  // x, y and heading are those of the pose; height and tilt stay.
+  const Isometry3d& T_odometry = *T_odometry_robot.T_target_source;
+  const Isometry3d T_before = m_mapper.T_map_odometry() * T_odometry;
+  m_mapper.relocalize(upright(*T_map_robot) * upright(T_before).inverse() * T_before *
+                      T_odometry.inverse());
   m_correctedAt.reset();
   notes() << "The robot is where an initial pose has it" << std::endl;
 }

@@ -1,5 +1,6 @@
 #include "Parameters.h"
 
+#include <mrpt/config/CConfigFileMemory.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <strict_files/IniSection.h>
@@ -7,7 +8,6 @@
 #include <strict_files/Words.h>
 
 #include <cmath>
-#include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -44,6 +44,7 @@ void NodeOptions::describe(OptionList& list) {
 void NodeOptions::validate() const { strict_files::checkOptions(*this, "NodeOptions"); }
 
 std::vector<int> NodeOptions::costsOf(int ranks) const {
+  if (costs.empty()) return {};
   std::vector<int> all;
   std::istringstream words(costs);
   for (std::string word; std::getline(words, word, ',');) {
@@ -52,8 +53,6 @@ std::vector<int> NodeOptions::costsOf(int ranks) const {
       throw std::invalid_argument("costs: '" + word + "' is no whole number from 0 to 100");
     all.push_back(static_cast<int>(cost));
   }
-  if (all.empty())
-    for (int rank = 0; rank < ranks; ++rank) all.push_back(ranks > 1 ? 90 * rank / (ranks - 1) : 0);
   if (all.size() != static_cast<std::size_t>(ranks))
     throw std::invalid_argument("costs: there are " + std::to_string(all.size()) +
                                 ", expected one for each of " + std::to_string(ranks) + " ranks");
@@ -66,34 +65,16 @@ const std::string kNode = "ros__parameters";  // as messages call those without 
 const std::set<std::string> kFiles = {"order", "map.classes", "planner.vehicle", "drive.reactive"};
 
 /** Parameters as sections of an .ini file. */
-class Source {
- public:
-  void set(const std::string& name, const std::string& value, const fs::path& folder) {
-    const bool isFile = kFiles.count(name) > 0 && !value.empty();
-    const std::size_t dot = name.find('.');
-    const std::string section = dot == std::string::npos ? kNode : name.substr(0, dot);
-    m_sections[section][name.substr(dot == std::string::npos ? 0 : dot + 1)] =
-        isFile ? (folder / value).lexically_normal().string() : value;
-  }
+using Source = mrpt::config::CConfigFileMemory;
 
-  // As mrpt::config::CConfigFileBase, for strict_files.
-  void getAllSections(std::vector<std::string>& names) const {
-    names.clear();
-    for (const auto& [name, keys] : m_sections) names.push_back(name);
-  }
-  void getAllKeys(const std::string& section, std::vector<std::string>& names) const {
-    names.clear();
-    if (const auto it = m_sections.find(section); it != m_sections.end())
-      for (const auto& [key, value] : it->second) names.push_back(key);
-  }
-  std::string read_string(const std::string& section, const std::string& key,
-                          const std::string&) const {
-    return m_sections.at(section).at(key);
-  }
-
- private:
-  std::map<std::string, std::map<std::string, std::string>> m_sections;
-};
+void set(Source& source, const std::string& name, const std::string& value,
+         const fs::path& folder) {
+  const bool isFile = kFiles.count(name) > 0 && !value.empty();
+  const std::size_t dot = name.find('.');
+  const std::string section = dot == std::string::npos ? kNode : name.substr(0, dot);
+  source.write(section, name.substr(dot == std::string::npos ? 0 : dot + 1),
+               isFile ? (folder / value).lexically_normal().string() : value);
+}
 
 /** Nested maps are sections. */
 void addAll(const strict_files::StrictYaml& yaml, const YAML::Node& map, const std::string& prefix,
@@ -112,7 +93,7 @@ void addAll(const strict_files::StrictYaml& yaml, const YAML::Node& map, const s
         value += (value.empty() ? "" : ", ") + yaml.text(element, name);
     else if (!entry.second.IsNull())
       value = yaml.text(entry.second, name);
-    source.set(name, value, folder);
+    set(source, name, value, folder);
   }
 }
 
@@ -173,7 +154,7 @@ Parameters readParameters(const std::vector<fs::path>& files,
                           const std::vector<std::pair<std::string, std::string>>& values) {
   Source source;
   for (const fs::path& file : files) addFile(file, source);
-  for (const auto& [name, value] : values) source.set(name, value, "");
+  for (const auto& [name, value] : values) set(source, name, value, "");
   return read(source);
 }
 

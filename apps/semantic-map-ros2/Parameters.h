@@ -29,7 +29,7 @@ struct NodeOptions {
   void describe(strict_files::OptionList& list);
   /** \throw std::invalid_argument naming the option and its value. */
   void validate() const;
-  /** An occupancy of 0 to 100 for each rank.
+  /** An occupancy of 0 to 100 for each rank; none: evenly.
    * \throw std::invalid_argument other numbers, or not as many as there are ranks */
   std::vector<int> costsOf(int ranks) const;
 };

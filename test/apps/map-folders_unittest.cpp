@@ -86,7 +86,7 @@ TEST_F(MapFolders, areReadTileByTileToTheSameResults) {
   expectSame("semantic-map-export", "tree.ot");
   expectSame("semantic-map-export", "classes.png");
   expectSame("semantic-map-export", "map.3Dscene");
-  expectSame("semantic-map-export", "smooth.csv", {"--neighbor-weight", "0.5"});
+  expectSame("semantic-map-export", "grid.gridmap");
   expectSame("semantic-map-merge", "part.semantic",
              {other, "--box", "-25.6", "-inf", "-1", "12.8", "0", "inf"});
 }

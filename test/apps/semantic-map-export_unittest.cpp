@@ -1,4 +1,3 @@
-#include <map_operations/SmoothedView.h>
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
@@ -36,14 +35,6 @@ std::size_t countOccupied(const SemanticOcTree& map) {
   std::size_t count = 0;
   for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
     count += map.isNodeOccupied(*leaf);
-  return count;
-}
-
-int obstacles(const COccupancyGridMap2D& grid) {
-  int count = 0;
-  for (unsigned cx = 0; cx < grid.getSizeX(); ++cx)
-    for (unsigned cy = 0; cy < grid.getSizeY(); ++cy)
-      count += grid.getCell(int(cx), int(cy)) < 0.45f;
   return count;
 }
 
@@ -90,23 +81,6 @@ TEST_F(SemanticMapExport, pointsAreTheOccupiedLeavesWithWhatTheMapSaysThere) {
   }
 }
 
-TEST_F(SemanticMapExport, pointsMayHaveTheClassThatTheirVoxelHasTogetherWithItsNeighbors) {
-  ASSERT_EQ(exportTo({"map.csv"}).status, 0);
-  ASSERT_EQ(exportTo({"smooth.csv"}, {"--neighbor-weight", "0.4"}).status, 0);
-  const auto own = csvTable(folder.read("map.csv")), smooth = csvTable(folder.read("smooth.csv"));
-  ASSERT_EQ(own.size(), smooth.size());
-  const semantic_octree::SmoothedView view(map, {0.4});
-  int changed = 0;
-  for (std::size_t i = 1; i < own.size(); ++i) {
-    const auto state = view.query(std::stod(own[i][0]), std::stod(own[i][1]), std::stod(own[i][2]));
-    EXPECT_EQ(own[i][4], smooth[i][4]) << "occupancy";
-    EXPECT_EQ(std::stoi(smooth[i][5]), state.likeliestClass);
-    EXPECT_NEAR(std::stod(smooth[i][7]), state.probability, 1e-6);
-    changed += own[i][5] != smooth[i][5];
-  }
-  EXPECT_GT(changed, 20);
-}
-
 TEST_F(SemanticMapExport, tablesHaveALinePerPointAndQuoteNames) {
   ASSERT_EQ(exportTo({"map.csv", "all.csv"}).status, 0);
   const std::string csv = folder.read("map.csv");
@@ -142,22 +116,22 @@ TEST_F(SemanticMapExport, gridsAreOccupiedAtPostsAndFreeOnTheGroundBetween) {
   EXPECT_GT(free, 1000);
 }
 
-TEST_F(SemanticMapExport, groundThatIsNamedNeverObstructs) {
-  ASSERT_EQ(exportTo({"all.gridmap"}).status, 0);
-  EXPECT_GT(obstacles(readGrid("all.gridmap")), 50);
-  ASSERT_EQ(exportTo({"none.gridmap"},
-                     {"--ground", "post", "--ground", "road", "--ground", "grass, \"wet\""})
-                .status,
-            0);
-  EXPECT_LT(obstacles(readGrid("none.gridmap")), 10);  // voxels where no class was seen
-}
-
-TEST_F(SemanticMapExport, aFloorAtAWrongHeightIsNoticed) {
-  const auto said = [this](const char* floor) {
-    return exportTo({"grid.yaml"}, {"-f", "--floor", floor}).output;
-  };
-  EXPECT_TRUE(contains(said("-1"), "% of the grid's known cells are obstacles"));
-  EXPECT_FALSE(contains(said("0"), "Warning")) << said("0");
+/** What a laser scanner sees in a room whose floor is at 1 m. */
+TEST_F(SemanticMapExport, aFlatFloorNeedsNoGroundInTheMap) {
+  SemanticOcTree room(0.2, coloredClasses());
+  semantic_types::LabeledCloud scan;
+  for (double angle = 0; angle < 2 * M_PI; angle += 0.01)
+    scan.points.push_back(3 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0).cast<float>());
+  for (int i = 0; i < 3; ++i)
+    room.insert(scan, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.5)));
+  saveTree(room, path("room.semantic"));
+  const auto at = [&](const char* name, float x) { return readGrid(name).getPos(x, 0.1f); };
+  succeeded(exportTo({"room.gridmap"}, {"--floor", "1"}, "room.semantic"));
+  EXPECT_GT(at("room.gridmap", 1.1f), 0.9);
+  EXPECT_LT(at("room.gridmap", 3), 0.1);
+  EXPECT_NEAR(at("room.gridmap", 3.5), 0.5, 0.01);
+  succeeded(exportTo({"above.gridmap"}, {"--floor", "2"}, "room.semantic"));
+  EXPECT_NEAR(at("above.gridmap", 3), 0.5, 0.01);
 }
 
 TEST_F(SemanticMapExport, mrptLoadsTheMapServersGrid) {
@@ -221,8 +195,7 @@ TEST_F(SemanticMapExport, scenesHoldABoxPerOccupiedLeaf) {
 TEST_F(SemanticMapExport, badInputIsRefusedByName) {
   expectRefusal(exportTo({"map.obj"}), {"map.obj", ".ply"});
   expectRefusal(exportTo({"a.yaml", "a.png"}), {"a.png", "twice"});
-  expectRefusal(exportTo({"a.gridmap"}, {"--ground", "ice"}), {"--ground", "'ice'"});
-  expectRefusal(exportTo({"a.gridmap"}, {"--low", "2", "--high", "1"}), {"a.gridmap", "high"});
+  expectRefusal(exportTo({"a.gridmap"}, {"--vehicle", "gone.yaml"}), {"a.gridmap", "gone.yaml"});
   expectRefusal(exportTo({"no/folder.ply"}), {"folder.ply"});
   expectRefusal(exportTo({"a.ply"}, {}, "none.semantic"), {"none.semantic"});
   folder.write("bad.semantic", "no map");
@@ -230,6 +203,7 @@ TEST_F(SemanticMapExport, badInputIsRefusedByName) {
   saveTree(SemanticOcTree(0.5, coloredClasses()), path("empty.semantic"));
   for (const char* name : {"a.gridmap", "a.yaml", "a.png"})
     expectRefusal(exportTo({name}, {}, "empty.semantic"), {name});
+  expectRefusal(exportTo({"a.yaml"}, {"--floor", "0"}, "empty.semantic"), {"the map is empty"});
 }
 
 TEST_F(SemanticMapExport, whatWasThereStaysIfAnythingFails) {

@@ -8,7 +8,6 @@
 #include <map_pictures/MapPictures.h>
 #include <semantic_driving/DynamicObstacles.h>
 #include <semantic_driving/ViewStrategy.h>
-#include <semantic_map/MapFiles.h>
 #include <semantic_map/MapOptions.h>
 #include <semantic_planning/planner/SemanticPlanner.h>
 #include <semantic_slam/SlamOptions.h>
@@ -72,9 +71,6 @@ std::vector<OptionTable> mapTables() {
           "[accuracy](../how-it-works/accuracy.md)."),
       table<map_pictures::PictureStyle, map_pictures::Viewpoint>(
           "Pictures", "`[pictures]` of `rawlog2semantic-map`."),
-      table<GridOptions>("2D grids",
-                         "What of a map obstructs a robot on the ground: "
-                         "`semantic_map::gridOf()`, `semantic-map-export`."),
   };
 }
 

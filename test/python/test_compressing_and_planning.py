@@ -120,12 +120,6 @@ def test_what_is_printed_says_what_it_is():
     assert repr(plan).startswith(f"<Plan of {plan.length:.1f} m, price {plan.price:.1f} m: ")
     assert f"{plan.length_per_class['grass']:.1f} m grass" in repr(plan)
     assert repr(grown.plan((50, 0, 0), (6, 0, 0), ORDER)).startswith("<Plan: no path: the start (50, 0)")
-    first = grown.abstraction({"road": 1.0, ("grass", "wall"): -0.5})
-    assert repr(first) == f"<Abstraction: {len(first.leaves())} of {len(grown)} leaves, alpha 0.002, road 1, grass+wall -0.5>"
-    grown.abstraction({"road": 1.0})
-    assert "replaced" in repr(first)
-    assert repr(grown.planner(["road", ["grass", "unknown"]])) == "<Planner: road before unknown, grass>"
-    assert repr(grown.follow()) == "<Follower: tiles of 2 m>"
 
 
 def test_a_name_that_is_nearly_a_class_is_asked_about():

@@ -1,14 +1,16 @@
 #include <gtest/gtest.h>
-#include <semantic_map/MapFiles.h>
 #include <semantic_types/ClassTable.h>
+
+#include <cmath>
 
 #include "CountedLabels.h"
 #include "DataSets.h"
+#include "GridFiles.h"
 #include "SharedData.h"
 
 namespace {
 
-using mrpt::maps::COccupancyGridMap2D;
+using semantic_map_export::Grid;
 struct RightPoints {
   int points = 0, right = 0;
   void add(bool isRight) { ++points, right += isRight; }
@@ -17,18 +19,19 @@ struct RightPoints {
 
 /** Counts points near the sensor, which is 1.73 m above the street. Road is to be in free cells,
  * what stands half a meter to one and a half above it in occupied ones. */
-void judge(const COccupancyGridMap2D& grid, const LabeledFrame& frame, const ClassTable& classes,
+void judge(const Grid& grid, const LabeledFrame& frame, const ClassTable& classes,
            RightPoints& road, RightPoints& standing) {
   for (std::size_t i = 0; i < frame.cloud.size(); ++i) {
     const Eigen::Vector3f& p = frame.cloud.points[i];
     const auto id = frame.cloud.classes[i];
     if (frame.isMoving(i) || id == 0 || p.norm() > 12) continue;
     const Eigen::Vector3d q = frame.T_map_sensor * p.cast<double>();
-    const float free = grid.getPos(float(q.x()), float(q.y()));
+    const int cost = grid.at(int(std::floor((q.x() - grid.xMin) / grid.resolution)),
+                             int(std::floor((q.y() - grid.yMin) / grid.resolution)));
     const std::string& name = classes.name(id);
-    if (name == "road") road.add(free > 0.5f);
+    if (name == "road") road.add(cost == 0);
     if ((name == "car" || name == "building") && p.z() > -1.2f && p.z() < -0.3f)
-      standing.add(free < 0.5f);
+      standing.add(cost == Grid::kLethal);
   }
 }
 
@@ -41,16 +44,11 @@ TEST(StreetGrid, theRoadIsFreeAndCarsAndWallsAreOccupied) {
   semantic_octree::SemanticOcTree map(0.2, classes);
   for (const LabeledFrame& frame : frames) map.insert(frame.cloud, frame.T_map_sensor);
 
-  semantic_map::GridOptions byClass;
-  for (const char* name : {"road", "sidewalk", "parking", "terrain"})
-    byClass.ground.push_back(*classes.find(name));
-  for (const auto& options : {semantic_map::GridOptions(), byClass}) {
-    const COccupancyGridMap2D grid = gridOf(map, options);
-    RightPoints road, standing;
-    for (const LabeledFrame& frame : frames) judge(grid, frame, classes, road, standing);
-    EXPECT_GT(road.points, 10000);
-    EXPECT_GT(standing.points, 1000);
-    EXPECT_GT(road.value(), 0.98);
-    EXPECT_GT(standing.value(), 0.9);
-  }
+  const Grid grid = semantic_map_export::gridOf(map, semantic_planning::VehicleOptions(), {});
+  RightPoints road, standing;
+  for (const LabeledFrame& frame : frames) judge(grid, frame, classes, road, standing);
+  EXPECT_GT(road.points, 10000);
+  EXPECT_GT(standing.points, 1000);
+  EXPECT_GT(road.value(), 0.98);
+  EXPECT_GT(standing.value(), 0.9);
 }

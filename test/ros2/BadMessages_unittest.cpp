@@ -67,6 +67,9 @@ TEST_F(RoadInGrass, saysOnceThatARobotInUtmIsOutsideOfTheMap) {
     live->send(*points, PointMessage(scan(), "lidar", i * kSecond).message());
     EXPECT_TRUE(live->waitFor([&] { return contains(live->said(), "subtract the same offset"); }));
   }
+  live->place("map", "base_link", Eigen::Isometry3d::Identity(), 5 * kSecond);
+  live->send(*points, PointMessage(scan(), "lidar", 5 * kSecond).message());
+  live->waitForScans(1);  // those before it have come, too
   live->end();
   EXPECT_EQ(count(live->said(), "outside the map"), 2u) << live->said();  // and how often
 }

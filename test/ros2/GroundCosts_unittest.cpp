@@ -1,4 +1,4 @@
-#include "GroundCosts.h"
+#include "ground_costs/GroundCosts.h"
 
 #include <gtest/gtest.h>
 #include <semantic_planning/planner/OrderFile.h>
@@ -10,10 +10,8 @@
 #include <numeric>
 #include <random>
 
-#include "DataSets.h"
-#include "SharedData.h"
 
-using semantic_map_ros2::GroundCosts;
+using ground_costs::GroundCosts;
 using Box = GroundCosts::Box;
 
 namespace {
@@ -39,6 +37,11 @@ void expectSame(const GroundCosts& a, const GroundCosts& b) {
 }
 
 }  // namespace
+
+TEST(GroundCosts, areEvenUnlessTheyAreSaid) {
+  EXPECT_EQ(ground_costs::evenCosts(4), (std::vector<int>{0, 30, 60, 90}));
+  EXPECT_EQ(ground_costs::evenCosts(1), std::vector<int>{0});
+}
 
 TEST(GroundCosts, afterEachScanAreThoseOfTheWholeMap) {
   const auto classes = synthetic_world::classTable();
@@ -101,18 +104,6 @@ class SomeRobots {
       EXPECT_NEAR(*m_costs[i].frameHeight(), kHeights[i], tolerance);
     }
   }
-  /** Blocked cells as a share of the known ones. */
-  double shareThatIsBlocked() const {
-    const GroundCosts& costs = m_costs.back();
-    const Box& box = *costs.box();
-    double known = 0, blocked = 0;
-    for (int y = box.low.y; y <= box.high.y; ++y)
-      for (int x = box.low.x; x <= box.high.x; ++x) {
-        known += costs.at({x, y}) != std::uint8_t(GroundCosts::kUnknown);
-        blocked += costs.at({x, y}) == GroundCosts::kBlocked;
-      }
-    return blocked / known;
-  }
 
  private:
   std::vector<GroundCosts> m_costs;
@@ -135,24 +126,4 @@ TEST(GroundCosts, areTheSameWhereverBaseLinkIsOnTheRobot) {
     robots.expectSameGrids();
   }
   robots.expectHeights(0.2);
-}
-
-TEST(GroundCosts, ofAStreetAreTheSameWhereverBaseLinkIsOnTheRobot) {
-  SKIP_WITHOUT_DATA("semantic_kitti");
-  const auto classes = semantic_types::loadClassTable(std::filesystem::path(MSO_SOURCE_DIR) /
-                                                      "config/classes/semantic_kitti.yaml");
-  for (const std::string sequence : {"00", "07"}) {
-    semantic_octree::SemanticOcTree map(0.2, classes);
-    SomeRobots robots(map, orderOf("semantic_kitti", classes));
-    semantic_octree::InsertionOptions insertion;
-    insertion.maxRange = 25;
-    for (const LabeledFrame& frame :
-         readSemanticKitti(sharedDataDir() / "semantic_kitti" / sequence, classes)) {
-      map.insert(frame.cloud, frame.T_map_sensor, insertion);
-      robots.follow(frame.T_map_sensor * Eigen::Translation3d(0, 0, -1.73));
-      robots.expectSameGrids();
-    }
-    robots.expectHeights(0.2);
-    EXPECT_LT(robots.shareThatIsBlocked(), 0.5);
-  }
 }

@@ -49,8 +49,7 @@ TEST(RosParameters, refuseWhatTheyDoNotKnow) {
 
 TEST(RosParameters, costsAreOfRanks) {
   semantic_map_ros2::NodeOptions options;
-  EXPECT_EQ(options.costsOf(4), (std::vector<int>{0, 30, 60, 90}));
-  EXPECT_EQ(options.costsOf(1), std::vector<int>{0});
+  EXPECT_TRUE(options.costsOf(4).empty());
   options.costs = "0, 40, 99";
   EXPECT_EQ(options.costsOf(3), (std::vector<int>{0, 40, 99}));
   EXPECT_TRUE(contains(errorOf([&] { options.costsOf(2); }), "there are 3"));

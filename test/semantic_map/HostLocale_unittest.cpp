@@ -35,12 +35,10 @@ std::string written(const Write& write) {
 
 /** All that is written of a map, one after the other. */
 std::vector<std::string> exportsOf(const semantic_octree::SemanticOcTree& tree) {
-  mrpt::maps::COccupancyGridMap2D grid(-1234.5f, 1234.5f, -3, 3, 0.5f);
-  return {written([&](std::ostream& out) { writeCsv(out, tree, {}); }),
-          written([&](std::ostream& out) { writePly(out, tree, {}); }),
+  return {written([&](std::ostream& out) { writeCsv(out, tree); }),
+          written([&](std::ostream& out) { writePly(out, tree); }),
           written([&](std::ostream& out) { writeOcTree(out, tree); }),
-          written([&](std::ostream& out) { writeBinaryOcTree(out, tree); }),
-          mapServerFiles(grid, "grid.png").yaml};
+          written([&](std::ostream& out) { writeBinaryOcTree(out, tree); })};
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ CSemanticOctoMap unusualMap() {
   map.insertionOptions.conversion.labels.minConfidence = 0.3;
   map.likelihoodOptions.decimation = 4;
   map.likelihoodOptions.useLabels = false;
-  map.renderingOptions.coloring = TRenderingOptions::Coloring::Height;
+  map.renderingOptions.coloring = TRenderingOptions::Coloring::Entropy;
   map.renderingOptions.minHeight = -3;
   map.renderingOptions.compressed = true;
   map.likelihoodOptions.beamStep = 0.7;
@@ -73,7 +73,7 @@ TEST(MapArchive, whatIsReadBackEqualsBitForBit) {
   EXPECT_EQ(read.insertionOptions.scan.maxRange, 7);
   EXPECT_EQ(read.insertionOptions.conversion.labels.minConfidence, 0.3);
   EXPECT_FALSE(read.genericMapParams.enableSaveAs3DObject);
-  EXPECT_EQ(read.renderingOptions.coloring, TRenderingOptions::Coloring::Height);
+  EXPECT_EQ(read.renderingOptions.coloring, TRenderingOptions::Coloring::Entropy);
   EXPECT_EQ(read.likelihoodOptions.decimation, 4);
   EXPECT_TRUE(read.insertionOptions.filter == map.tree().filterParameters());
 }
@@ -120,10 +120,10 @@ TEST(MapArchive, thoseOfAnotherVersionAreRefused) {
   const std::size_t version = bytes.find(name) + name.size();
   ASSERT_EQ(bytes.at(version), 2);
   CSemanticOctoMap map(0.2, threeClasses());
-  bytes[version] = 1;
-  EXPECT_TRUE(contains(errorOf([&] { readBytes(map, bytes); }), "load its .semantic file instead"));
-  bytes[version] = 3;
-  EXPECT_ANY_THROW(readBytes(map, bytes));
+  for (const char other : {1, 3}) {
+    bytes[version] = other;
+    EXPECT_ANY_THROW(readBytes(map, bytes));
+  }
 }
 
 TEST(MapArchive, everyWayOfCopyingAnswersEveryQueryAlike) {

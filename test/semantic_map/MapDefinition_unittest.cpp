@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/maps/CMultiMetricMap.h>
-#include <mrpt_compat/Release.h>
-
-#include <sstream>
 
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
@@ -59,7 +56,7 @@ TEST(MapDefinition, optionsAreReadFromTheirSections) {
       "[Maps_semanticOctoMap_00_insertOpts]\nrays = EndVoxels\nmaxRange = 30\n"
       "decimation = 3\naccuracy = 0.8\n"
       "[Maps_semanticOctoMap_00_likelihoodOpts]\ndecimation = 7\n"
-      "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = height\nmax_height = inf\n");
+      "[Maps_semanticOctoMap_00_renderOpts]\ncoloring = entropy\nmax_height = inf\n");
   const auto& insertion = map->insertionOptions;
   EXPECT_EQ(map->tree().getResolution(), 0.25);
   EXPECT_EQ(map->tree().classes().name(2), "tree");
@@ -70,7 +67,7 @@ TEST(MapDefinition, optionsAreReadFromTheirSections) {
   EXPECT_EQ(insertion.conversion.decimation, 3);
   EXPECT_EQ(map->tree().filterParameters().accuracy, 0.8);
   EXPECT_EQ(map->likelihoodOptions.decimation, 7);
-  EXPECT_EQ(map->renderingOptions.coloring, TRenderingOptions::Coloring::Height);
+  EXPECT_EQ(map->renderingOptions.coloring, TRenderingOptions::Coloring::Entropy);
   EXPECT_EQ(map->renderingOptions.maxHeight, INFINITY);
 }
 
@@ -83,28 +80,6 @@ TEST(MapDefinition, anUnknownKeyOrSectionIsNamedWithTheNearestKnownOne) {
   expectRefused("renderOpts", "decimation = 3", {"_renderOpts", "'decimation'"});
   expectRefused("insertionOpts", "max_range = 3",
                 {"Maps_semanticOctoMap_00_insertionOpts", "unknown section", "insertOpts"});
-}
-
-TEST(MapDefinition, whatMrptLeavesOutInSilenceIsNamed) {
-  const auto refusal = [](const std::string& lines) {
-    return errorOf([&] { mapOf("[Maps]\nsemanticOctoMap_count = 1\n" + lines); });
-  };
-  const std::string unknown = refusal("pointMap_count = 1\n");
-  EXPECT_TRUE(contains(unknown, "pointMap_count: there is no map type"));
-  EXPECT_EQ(refusal("pointsMap_count = 1\nother = 3\n"), "");
-  // MRPT itself refuses even none of what it does not know, since 2.11.3.
-  EXPECT_EQ(refusal("pointMap_count = 0\n").empty(), !MSO_MRPT_AT_LEAST(2, 11, 3));
-  const std::string beyond = refusal("[Maps_semanticOctoMap_01_insertOpts]\nmax_range = 3\n");
-  EXPECT_TRUE(contains(beyond, "Maps_semanticOctoMap_01_insertOpts") && contains(beyond, "is 1"))
-      << beyond;
-  EXPECT_TRUE(contains(refusal("[Maps_semanticOctoMap_0_insertOpts]\n"), "begin at 00"));
-  EXPECT_EQ(refusal("[Maps_pointsMap_07_insertOpts]\n[Other_semanticOctoMap_05_insertOpts]\n"), "");
-  EXPECT_TRUE(contains(errorOf([] {
-                         mapOf(
-                             "[Maps]\nsemantic_map::CSemanticOctoMap_count = 1\n"
-                             "[Maps_semantic_map::CSemanticOctoMap_1_insertOpts]\n");
-                       }),
-                       "begin at 00"));
 }
 
 TEST(MapDefinition, aBadValueIsNamedWithWhatWasExpected) {
@@ -135,22 +110,6 @@ TEST(MapDefinition, whatIsSavedIsReadBack) {
   EXPECT_EQ(read.renderOpts.coloring, TRenderingOptions::Coloring::Probability);
   EXPECT_EQ(read.renderOpts.maxHeight, INFINITY);
   EXPECT_FALSE(read.genericMapParams.enableObservationLikelihood);
-}
-
-TEST(MapOptions, whatIsDumpedIsReadBack) {
-  semantic_map::TAbstractionOptions options, read;
-  options.relevant = "road: 1, tree+wall: 0.5";
-  options.unknown = semantic_octree::AbstractionOptions::Unknown::Uniform;
-  options.regionTexts = "box 0 0 0 1 2 3 4; sphere 1 2 3 0.5 0";
-  options.blockSize = 1.0 / 3;
-  std::ostringstream dump;
-  options.dumpToTextStream(dump);
-  read.loadFromConfigFile(mrpt::config::CConfigFileMemory("[S]\n" + dump.str()), "S");
-  EXPECT_EQ(read.relevant, options.relevant);
-  EXPECT_EQ(read.irrelevant, "");
-  EXPECT_EQ(read.unknown, options.unknown);
-  EXPECT_EQ(read.regionTexts, options.regionTexts);
-  EXPECT_EQ(read.blockSize, options.blockSize);
 }
 
 TEST(MapOptions, aRefusedSectionLeavesTheOptionsAsTheyWere) {

@@ -54,20 +54,6 @@ std::string StockApps::shortRawlog(const std::string& dataset, std::size_t pairs
   return file;
 }
 
-std::string StockApps::configWith(const std::string& name, const std::string& section,
-                                  const std::string& line) const {
-  std::string text;
-  std::ifstream in(folder / ("config/stock-apps/" + name));
-  text.assign(std::istreambuf_iterator<char>(in), {});
-  const std::string head = "[" + section + "]\n";
-  const std::size_t place = text.find(head);
-  if (place == std::string::npos)
-    text += "\n" + head + line + "\n";
-  else
-    text.insert(place + head.size(), line + "\n");
-  return folder.write(name, text).string();
-}
-
 namespace {
 
 using semantic_octree::CellState;

@@ -27,9 +27,6 @@ class StockApps : public testing::Test {
   /** The first PAIRS of actions and observations of one of mrpt-common's rawlogs.
    * (rawlog-edit --cut leaves a last pair without observations, at which icp-slam gives up.) */
   std::string shortRawlog(const std::string& dataset, std::size_t pairs) const;
-  /** A configuration of config/stock-apps with a line more, or another, in one of its sections. */
-  std::string configWith(const std::string& name, const std::string& section,
-                         const std::string& line) const;
 
   static const std::string kPlugin;
   TemporaryFolder folder;
@@ -62,7 +59,6 @@ struct LaserMapCheck {
   double pathInFree = 0;        ///< share of the scanner's places that are free
 };
 
-/** \param scanner height of the scanner above the robot, and ahead of it, m */
 LaserMapCheck checkLaserMap(const semantic_octree::SemanticOcTree& map,
                             const std::filesystem::path& points, const std::filesystem::path& path);
 

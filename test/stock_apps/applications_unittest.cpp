@@ -46,14 +46,6 @@ TEST_F(IcpSlam, withoutThePluginThereIsNoSuchMapWhichOnlyNewerReleasesSay) {
             kMrptRefusesUnknownMaps);
 }
 
-TEST_F(IcpSlam, aMisspelledOptionStopsItWithTheReason) {
-  const std::string ini =
-      configWith("icp-slam.ini", "MappingApplication_semanticOctoMap_00_insertOpts", "maxRnage=9");
-  const ProgramRun slammed = slam(ini, Plugin::Preloaded);
-  EXPECT_NE(slammed.status, 0);
-  EXPECT_TRUE(contains(slammed.output, "maxRnage"));
-}
-
 class RbpfSlam : public StockApps {
  protected:
   void SetUp() override {
@@ -180,16 +172,6 @@ TEST_F(RawlogEdit, cutsThemWithoutChangingABit) {
     EXPECT_EQ(a->cloud.classes, b->cloud.classes);
     EXPECT_EQ(a->classNames, b->classNames);
   }
-}
-
-TEST_F(RawlogEdit, picksThemByTheirSensorsLabel) {
-  if (!kRawlogEditDrops) GTEST_SKIP() << "rawlog-edit of this MRPT drops nothing";
-  const ProgramRun kept = edit("--keep-label LIDAR -i " + kVillage + " -o lidar.rawlog");
-  ASSERT_EQ(kept.status, 0) << kept.output;
-  const auto clouds = observationsOf(folder / "lidar.rawlog");
-  EXPECT_EQ(clouds.size(), 24u);
-  for (const auto& cloud : clouds)
-    EXPECT_TRUE(std::dynamic_pointer_cast<CObservationLabeledCloud>(cloud));
 }
 
 TEST_F(RawlogEdit, withoutThePluginTheRawlogEndsAtTheFirstCloudAndTheStatusIsZero) {

@@ -1,5 +1,4 @@
 // A node of rclcpp that maps labeled clouds, for those who compose nodes.
-#include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/Words.h>
@@ -8,36 +7,29 @@
 #include <tf2_ros/transform_listener.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstring>
-#include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
-#include <octomap_msgs/msg/octomap.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>
-#include <set>
 #include <std_srvs/srv/trigger.hpp>
 #include <tf2_eigen/tf2_eigen.hpp>
 
-#include "NodeMap.h"
+#include "OccupiedVoxels.h"
 #include "Parameters.h"
 #include "ScanQueue.h"
 #include "point_fields/PointFields.h"
 
 namespace semantic_map_ros2 {
 
-using geometry_msgs::msg::PoseWithCovarianceStamped;
-using octomap_msgs::msg::Octomap;
 using sensor_msgs::msg::PointCloud2;
 
 constexpr std::chrono::milliseconds kStep{20};  // between looks at them
 
 /** Maps the clouds of `points`, whose poses tf2 knows, by the runtime of semantic-map-ros2. It
- * publishes `~/occupied`, the compressed tree (`~/change`, `~/compressed`) and, with `slam`, the
- * transform from map to odom, which `initialpose` sets. `~/save` writes the file that `output`
- * names, and so does the end. Its parameters are those of semantic-map-ros2; planning, driving,
- * images and laser scans are that program's alone. Everything runs in the executor's thread. */
+ * publishes `~/occupied` and, with `slam`, the transform from map to odom. `~/save` writes the file
+ * that `output` names, and so does the end. Its parameters are those of semantic-map-ros2; all else
+ * is that program's alone. Everything runs in the executor's thread. */
 class SemanticMapComponent : public rclcpp::Node {
  public:
   /** \throw std::runtime_error naming the parameter or file that is wrong */
@@ -48,19 +40,12 @@ class SemanticMapComponent : public rclcpp::Node {
         m_parameters(declared()),
         m_map(m_parameters.newMap()),
         m_mapper(m_map, m_parameters.mapping()),
-        m_voxels(m_map),
-        m_tree(m_map),
         m_scanClock(m_parameters.insertion.maxGap),
         m_queue(m_parameters.node, surroundings()) {
     m_hears = create_subscription<PointCloud2>(
         "points", rclcpp::SensorDataQoS().keep_last(50),
         [this](const PointCloud2::ConstSharedPtr& cloud) { add(cloud); });
-    m_hearsPose = create_subscription<PoseWithCovarianceStamped>(
-        "initialpose", 1,
-        [this](PoseWithCovarianceStamped::ConstSharedPtr pose) { relocalizeAt(*pose); });
     m_says = create_publisher<PointCloud2>("~/occupied", rclcpp::QoS(1).transient_local());
-    m_saysChanges = create_publisher<Octomap>("~/change", TreeTeller::kMostChanges);
-    m_saysTree = create_publisher<Octomap>("~/compressed", 1);
     m_saves = create_service<std_srvs::srv::Trigger>(
         "~/save", [this](std_srvs::srv::Trigger::Request::ConstSharedPtr,
                          std_srvs::srv::Trigger::Response::SharedPtr response) {
@@ -157,7 +142,9 @@ class SemanticMapComponent : public rclcpp::Node {
     const auto find = [this](const std::string& target, const std::string& source,
                              Stamp stamp) -> Surroundings::Answer {
       try {
-        return {transform(target, source, rclcpp::Time(stamp)), {}};
+        return {tf2::transformToEigen(
+                    m_transforms.lookupTransform(target, source, rclcpp::Time(stamp))),
+                {}};
       } catch (const tf2::TransformException& e) {
         return {{}, e.what()};
       }
@@ -180,11 +167,6 @@ class SemanticMapComponent : public rclcpp::Node {
       continue;
   }
 
-  Eigen::Isometry3d transform(const std::string& target, const std::string& source,
-                              const rclcpp::Time& stamp) const {
-    return tf2::transformToEigen(m_transforms.lookupTransform(target, source, stamp));
-  }
-
   void sayCorrection() {
     geometry_msgs::msg::TransformStamped correction =
         tf2::eigenToTransform(m_mapper.T_map_odometry());
@@ -194,66 +176,13 @@ class SemanticMapComponent : public rclcpp::Node {
     m_corrects.sendTransform(correction);
   }
 
-  void relocalizeAt(const PoseWithCovarianceStamped& message) try {
-    const NodeOptions& node = m_parameters.node;
-    if (!node.slam) return warn("an initial pose came, but without slam tf2 has the robot");
-    const auto T_map_frame = transform(node.mapFrame, message.header.frame_id, rclcpp::Time());
-    const auto latest =
-        m_transforms.lookupTransform(node.worldFrame(), node.baseFrame, rclcpp::Time());
-    Eigen::Isometry3d T_frame_robot;
-    tf2::fromMsg(message.pose.pose, T_frame_robot);
-    if (!T_frame_robot.matrix().allFinite()) return warn("an initial pose is no pose");
-    relocalize(m_mapper, T_map_frame * T_frame_robot, tf2::transformToEigen(latest));
-    m_stamp = latest.header.stamp;
-    sayCorrection();
-  } catch (const tf2::TransformException& e) {
-    warn(std::string("an initial pose cannot be understood: ") + e.what());
-  }
-
-  std_msgs::msg::Header header() const {
-    std_msgs::msg::Header header;
-    header.frame_id = m_parameters.node.mapFrame;
-    header.stamp = m_stamp;
-    return header;
-  }
-
   void publish() {
-    if (m_scans == 0) return;
-    if (m_scans != m_published && m_says->get_subscription_count() > 0) publishOccupied();
-    const bool isRead =
-        m_saysChanges->get_subscription_count() + m_saysTree->get_subscription_count() > 0;
-    if (isRead && !hasAbstraction(m_map))
-      return warn("~/compressed: the map has no abstraction; abstraction.relevant gives it one");
-    const auto writer = [this](const rclcpp::Publisher<Octomap>::SharedPtr& to) {
-      return [this, to](const std::string& data) {
-        auto message = std::make_unique<Octomap>();
-        message->header = header();
-        message->id = TreeTeller::kId;
-        message->resolution = m_map.getResolution();
-        message->data.assign(data.begin(), data.end());
-        to->publish(std::move(message));
-      };
-    };
-    const TreeTeller::Write all = writer(m_saysTree);
-    m_tree.tell(isRead, writer(m_saysChanges), hasNewReader() ? all : nullptr);
-  }
-
-  /** Somebody reads ~/compressed who has nothing yet. (With rmw_cyclonedds no event told of it.) */
-  bool hasNewReader() {
-    Readers readers;
-    for (const auto& reader : get_subscriptions_info_by_topic(m_saysTree->get_topic_name()))
-      readers.insert(reader.endpoint_gid());
-    const bool isNew = !std::includes(m_told.begin(), m_told.end(), readers.begin(), readers.end());
-    if (m_saysTree->get_subscription_count() >= readers.size()) m_told = std::move(readers);
-    return isNew;
-  }
-
-  void publishOccupied() {
+    if (m_scans == m_published || m_says->get_subscription_count() == 0) return;
     m_published = m_scans;
-    m_voxels.follow();
-    const std::vector<PackedPoint> points = m_voxels.points();
+    const std::vector<PackedPoint> points = occupiedVoxels(m_map);
     auto message = std::make_unique<PointCloud2>();
-    message->header = header();
+    message->header.frame_id = m_parameters.node.mapFrame;
+    message->header.stamp = m_stamp;
     for (const auto& [name, type] : fieldsOfPoint()) {
       sensor_msgs::msg::PointField field;
       field.name = name, field.datatype = type, field.count = 1;
@@ -274,10 +203,6 @@ class SemanticMapComponent : public rclcpp::Node {
   Parameters m_parameters;
   semantic_octree::SemanticOcTree m_map;
   semantic_slam::Mapper m_mapper;
-  OccupiedVoxels m_voxels;
-  TreeTeller m_tree;
-  using Readers = std::set<std::array<std::uint8_t, RMW_GID_STORAGE_SIZE>>;
-  Readers m_told;  ///< of ~/compressed
   semantic_map::ObservationClock m_scanClock;
   double m_seconds = 0;  ///< that passed, by the clouds
   ScanQueue m_queue;
@@ -287,9 +212,7 @@ class SemanticMapComponent : public rclcpp::Node {
   tf2_ros::TransformListener m_listener{m_transforms, this};
   tf2_ros::TransformBroadcaster m_corrects{this};
   rclcpp::Subscription<PointCloud2>::SharedPtr m_hears;
-  rclcpp::Subscription<PoseWithCovarianceStamped>::SharedPtr m_hearsPose;
   rclcpp::Publisher<PointCloud2>::SharedPtr m_says;
-  rclcpp::Publisher<Octomap>::SharedPtr m_saysChanges, m_saysTree;
   rclcpp::Service<std_srvs::srv::Trigger>::SharedPtr m_saves;
   rclcpp::TimerBase::SharedPtr m_inserts, m_publishes;
 };

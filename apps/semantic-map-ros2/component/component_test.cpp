@@ -1,37 +1,26 @@
 // The component as a container loads it, and a node that publishes clouds of a floor, in one
 // process.
-#include <map_streams/MapStream.h>
-#include <semantic_abstraction/Abstraction.h>
 #include <semantic_octree/TreeFile.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 #include <class_loader/class_loader.hpp>
 
 #include <cmath>
-#include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
 #include <iostream>
-#include <octomap_msgs/msg/octomap.hpp>
-#include <optional>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/node_factory.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>
 #include <sensor_msgs/point_cloud2_iterator.hpp>
 #include <set>
-#include <sstream>
 #include <std_srvs/srv/trigger.hpp>
-#include <tf2_msgs/msg/tf_message.hpp>
 
 namespace {
 
 using namespace std::chrono_literals;
-using geometry_msgs::msg::PoseWithCovarianceStamped;
-using octomap_msgs::msg::Octomap;
-using semantic_octree::SemanticOcTree;
 using sensor_msgs::msg::PointCloud2;
 using sensor_msgs::msg::PointField;
 
 const char* const kMapFile = "component.semantic";
-const char* const kRelevant = "road: 1";
 constexpr double kResolution = 0.2, kSensorHeight = 1.5;
 constexpr std::uint16_t kRoad = 1;  // raw id in config/classes/synthetic.yaml
 
@@ -77,7 +66,6 @@ rclcpp::NodeOptions optionsWith(const std::string& name, const Value& value) {
   options.use_intra_process_comms(true);
   options.parameter_overrides({{"map.classes", SEMANTIC_CONFIG "/classes/synthetic.yaml"},
                                {"map.resolution", kResolution},
-                               {"abstraction.relevant", kRelevant},
                                {"publish_period", 0.1},
                                {"output", kMapFile},
                                {name, value}});
@@ -97,43 +85,6 @@ void refusesUnknownParameters(rclcpp_components::NodeFactory& factory) try {
 } catch (const std::exception& e) {
   expect(std::string(e.what()).find("insertion.max_rnge") != std::string::npos, e.what());
 }
-
-/** A map but for its calibration, which is fitted anew only when that of the whole map changes. */
-std::string bytesOf(SemanticOcTree map) {
-  map.setCalibration({});
-  std::ostringstream out;
-  writeTree(out, map);
-  return out.str();
-}
-
-/** The compressed tree of the map that was saved. */
-std::string savedTree() {
-  SemanticOcTree map = semantic_octree::loadTree(kMapFile);
-  semantic_octree::AbstractionOptions options;
-  options.relevant = kRelevant;
-  setAbstraction(map, options);
-  return bytesOf(semantic_octree::Abstraction(map).compressedMap());
-}
-
-/** A copy of the compressed tree. */
-class Copy {
- public:
-  Copy(rclcpp::Node& node, const char* topic, std::size_t depth)
-      : m_hears(node.create_subscription<Octomap>(
-            topic, depth, [this](Octomap::ConstSharedPtr message) {
-              expect(message->id == "SemanticTree", "the tree's messages say what they are");
-              m_tree.accept({message->data.begin(), message->data.end()});
-              m_isThere = true;
-            })) {}
-  bool is(const std::string& bytes) const {
-    return m_isThere && m_tree.isCurrent() && bytesOf(m_tree.map()) == bytes;
-  }
-
- private:
-  bool m_isThere = false;
-  semantic_octree::TreeCopy m_tree;
-  rclcpp::Subscription<Octomap>::SharedPtr m_hears;
-};
 
 /** A component and a node that speaks to it, in one executor. */
 struct Composed {
@@ -158,7 +109,6 @@ void mapsAFloor(rclcpp_components::NodeFactory& factory) {
   tf2_ros::StaticTransformBroadcaster fixed(peer);
   tf2_ros::TransformBroadcaster moving(peer);
   const auto clouds = peer->create_publisher<PointCloud2>("points", rclcpp::SensorDataQoS());
-  const Copy copy(*peer, "/semantic_map/change", 100);
   PointCloud2::ConstSharedPtr occupied;
   const auto hears = peer->create_subscription<PointCloud2>(
       "/semantic_map/occupied", rclcpp::QoS(1).transient_local(),
@@ -194,40 +144,7 @@ void mapsAFloor(rclcpp_components::NodeFactory& factory) {
                  rclcpp::FutureReturnCode::SUCCESS &&
              answer.get()->success,
          "the map is saved");
-  const Copy late(*peer, "/semantic_map/compressed", 1);
-  const std::string tree = savedTree();
-  for (int i = 0; i < 50 && !(copy.is(tree) && late.is(tree)); ++i) composed.spinFor(100ms);
-  expect(copy.is(tree), "changes make a copy of the compressed tree");
-  expect(late.is(tree), "who comes late gets all of it");
-}
-
-void isWhereAnInitialPoseHasIt(rclcpp_components::NodeFactory& factory) {
-  Composed composed(factory, optionsWith("slam", true));
-  const auto& peer = composed.peer;
-  tf2_ros::TransformBroadcaster moving(peer);
-  const auto poses = peer->create_publisher<PoseWithCovarianceStamped>("initialpose", 1);
-  std::optional<geometry_msgs::msg::Transform> correction;
-  const auto hears = peer->create_subscription<tf2_msgs::msg::TFMessage>(
-      "/tf", 100, [&](tf2_msgs::msg::TFMessage::ConstSharedPtr message) {
-        for (const auto& t : message->transforms)
-          if (t.header.frame_id == "map" && t.child_frame_id == "odom") correction = t.transform;
-      });
-  PoseWithCovarianceStamped pose;
-  pose.header.frame_id = "map";
-  pose.pose.pose.position.x = 5, pose.pose.pose.position.y = 2, pose.pose.pose.position.z = 9;
-  pose.pose.pose.orientation.z = pose.pose.pose.orientation.w = std::sqrt(0.5);  // to the left
-  for (int i = 0; i < 50 && !correction; ++i) {
-    moving.sendTransform(stampedTransform(peer->now(), "odom", "base_link", 1, 0.5));
-    composed.spinFor(50ms);
-    poses->publish(pose);
-    composed.spinFor(50ms);
-  }
-  expect(correction.has_value(), "an initial pose corrects odometry at once");
-  if (!correction) return;
-  const auto& t = correction->translation;
-  expect(std::hypot(t.x - 5, t.y - 1) < 1e-6, "to where the pose has the robot");
-  expect(std::abs(t.z) < 1e-6, "at the height that it had");
-  expect(std::abs(correction->rotation.z - std::sqrt(0.5)) < 1e-6, "headed as the pose");
+  expect(semantic_octree::loadTree(kMapFile).getNumLeafNodes() > 400, "with what was seen");
 }
 
 }  // namespace
@@ -239,7 +156,6 @@ int main(int argc, char** argv) {
     const auto factory = factoryOf(loader);
     refusesUnknownParameters(*factory);
     mapsAFloor(*factory);
-    isWhereAnInitialPoseHasIt(*factory);
   }
   rclcpp::shutdown();
   return failures == 0 ? 0 : 1;

@@ -101,19 +101,6 @@ class MapAbstraction {
   double alpha() {
     return with([](Abstraction& abstraction) { return abstraction.options().weights.alpha; });
   }
-  std::string text() const {
-    return m_map->write([&](SemanticOcTree& tree) -> std::string {
-      if (m_map->numAbstractions != m_number) return "<Abstraction that another one replaced>";
-      const Abstraction abstraction(tree);
-      const auto& weights = abstraction.options().weights;
-      std::string text = "<Abstraction: " + std::to_string(abstraction.leaves().size()) + " of " +
-                         std::to_string(tree.getNumLeafNodes()) + " leaves, alpha " +
-                         strict_files::textOf(weights.alpha);
-      for (const auto& term : weights.terms)
-        text += ", " + term.name + " " + strict_files::textOf(term.weight);
-      return text + ">";
-    });
-  }
 
  private:
   std::shared_ptr<SharedMap> m_map;
@@ -151,8 +138,7 @@ Raises ValueError: both, a negative alpha, or fewer leaves than there are blocks
            R"(Share of each term's information that the compressed tree keeps, by its name.
 
 None where there is none to keep.)")
-      .def_property_readonly("alpha", &MapAbstraction::alpha, "Price of detail.")
-      .def("__repr__", &MapAbstraction::text);
+      .def_property_readonly("alpha", &MapAbstraction::alpha, "Price of detail.");
   map.def("abstraction", &abstractionOf, py::arg("weights"), py::kw_only(),
           py::arg("solution") = "",
           R"(Keeps from now on what the optimal abstraction needs.

@@ -34,51 +34,48 @@ py::array arrayOfArgument(const py::object& argument, const std::string& name) {
                         expected);
 }
 
-template <class T>
-bool isNative(const py::array& array) {
-  return array.dtype().is(py::dtype::of<T>()) || array.dtype().equal(py::dtype::of<T>());
+/** An array of rows of real numbers. \throw py::value_error as Rows */
+py::array rowsOf(const py::object& argument, const std::string& name, py::ssize_t columns,
+                 std::optional<py::ssize_t> rows = {}) {
+  const py::array array = arrayOfArgument(argument, name);
+  const bool fits = array.ndim() == 2 && array.shape(1) == columns &&
+                    array.shape(0) == rows.value_or(array.shape(0));
+  if (!fits || std::string("fiu").find(array.dtype().kind()) == std::string::npos)
+    throw py::value_error(name + ": expected " + (rows ? std::to_string(*rows) : "N") + " x " +
+                          std::to_string(columns) + " real numbers, got " + typeOf(array) +
+                          " of shape " + shapeOf(array));
+  constexpr std::size_t kBytes = 64;  // of what becomes of a row
+  if (static_cast<std::size_t>(array.shape(0)) > strict_files::availableMemory() / kBytes)
+    throw py::value_error(name + ": " + std::to_string(array.shape(0)) +
+                          " rows are more than memory holds");
+  return array;
 }
 
 /** \param Whole the widest type of the labels' kind */
 template <class Whole>
 std::vector<ClassId> idsOf(const py::array& labels, int numClasses) {
-  const bool areBytes = isNative<ClassId>(labels);
-  const py::array array = areBytes ? labels : py::array(py::array_t<Whole>::ensure(labels));
-  std::vector<ClassId> ids(static_cast<std::size_t>(array.shape(0)));
-  const auto read = [&](const auto& at) {
-    for (py::ssize_t i = 0; i < at.rows; ++i) {
-      const auto label = at(i, 0);
-      if (!(label >= 0 && label <= static_cast<Whole>(numClasses)))
-        refuse("labels", i, std::to_string(label), "0 (none) to " + std::to_string(numClasses));
-      ids[static_cast<std::size_t>(i)] = static_cast<ClassId>(label);
-    }
-  };
-  const auto* data = static_cast<const char*>(array.data());
-  if (areBytes)
-    read(ArrayView<ClassId>{data, array.shape(0), array.strides(0), 0});
-  else
-    read(ArrayView<Whole>{data, array.shape(0), array.strides(0), 0});
+  const ArrayOf<Whole> array(labels);
+  std::vector<ClassId> ids;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    const Whole label = array.data()[i];
+    if (static_cast<std::uint64_t>(label) > static_cast<std::uint64_t>(numClasses))
+      refuse("labels", i, std::to_string(label), "0 (none) to " + std::to_string(numClasses));
+    ids.push_back(static_cast<ClassId>(label));
+  }
   return ids;
 }
 
-std::vector<float> probabilitiesOf(const Rows& rows, int numClasses) {
+std::vector<float> probabilitiesOf(const Rows& rows) {
   constexpr double kRounding = 0.01;  // of half floats
-  std::vector<float> probabilities;
-  probabilities.reserve(static_cast<std::size_t>(rows.size() * numClasses));
-  rows.visit([&](const auto& at) {
-    for (py::ssize_t i = 0; i < at.rows; ++i) {
-      double sum = 0;
-      for (int k = 0; k < numClasses; ++k) {
-        const double q = at(i, k);
-        if (!(q >= 0 && q <= 1)) refuse("labels", i, std::to_string(q), "probabilities, 0 to 1");
-        probabilities.push_back(static_cast<float>(q));
-        sum += q;
-      }
-      if (sum != 0 && std::fabs(sum - 1) > kRounding)
-        refuse("labels", i, "a sum of " + std::to_string(sum), "1, or 0 for no label");
-    }
-  });
-  return probabilities;
+  const auto values = rows.values();
+  for (py::ssize_t i = 0; i < values.rows(); ++i) {
+    for (const double q : values.row(i))
+      if (!(q >= 0 && q <= 1)) refuse("labels", i, std::to_string(q), "probabilities, 0 to 1");
+    const double sum = values.row(i).sum();
+    if (sum != 0 && std::fabs(sum - 1) > kRounding)
+      refuse("labels", i, "a sum of " + std::to_string(sum), "1, or 0 for no label");
+  }
+  return {values.data(), values.data() + values.size()};
 }
 
 /** Unlike each other, and the same for the same number. */
@@ -120,38 +117,25 @@ std::string textOf(const py::handle& value) {
 
 Rows::Rows(const py::object& argument, std::string name, py::ssize_t columns,
            std::optional<py::ssize_t> rows)
-    : m_name(std::move(name)), m_array(arrayOfArgument(argument, m_name)) {
-  const bool fits = m_array.ndim() == 2 && m_array.shape(1) == columns &&
-                    m_array.shape(0) == rows.value_or(m_array.shape(0));
-  if (!fits || std::string("fiu").find(m_array.dtype().kind()) == std::string::npos)
-    throw py::value_error(m_name + ": expected " + (rows ? std::to_string(*rows) : "N") + " x " +
-                          std::to_string(columns) + " real numbers, got " + typeOf(m_array) +
-                          " of shape " + shapeOf(m_array));
-  constexpr std::size_t kBytes = 64;  // of what becomes of a row
-  if (static_cast<std::size_t>(m_array.shape(0)) > strict_files::availableMemory() / kBytes)
-    throw py::value_error(m_name + ": " + std::to_string(m_array.shape(0)) +
-                          " rows are more than memory holds");
-  m_areFloats = isNative<float>(m_array);
-  if (!m_areFloats && !isNative<double>(m_array)) m_array = py::array_t<double>::ensure(m_array);
-}
+    : m_name(std::move(name)), m_array(rowsOf(argument, m_name, columns, rows)) {}
 
 void Rows::checkFinite() const {
-  const py::ssize_t columns = m_array.shape(1);
-  visit([&](const auto& at) {
-    for (py::ssize_t i = 0; i < at.rows; ++i)
-      for (py::ssize_t j = 0; j < columns; ++j)
-        if (!std::isfinite(at(i, j)))
-          refuse(m_name, i, std::to_string(at(i, j)), "numbers that are finite");
-  });
+  const auto all = values();
+  for (py::ssize_t i = 0; i < all.rows(); ++i)
+    for (const double number : all.row(i))
+      if (!std::isfinite(number))
+        refuse(m_name, i, std::to_string(number), "numbers that are finite");
 }
 
-std::vector<Eigen::Vector3f> pointsOf(const Rows& rows) {
-  std::vector<Eigen::Vector3f> points(static_cast<std::size_t>(rows.size()));
-  rows.visit([&](const auto& at) {
-    for (py::ssize_t i = 0; i < at.rows; ++i)
-      points[static_cast<std::size_t>(i)] = {
-          static_cast<float>(at(i, 0)), static_cast<float>(at(i, 1)), static_cast<float>(at(i, 2))};
-  });
+std::vector<Eigen::Vector3f> pointsOf(const py::object& argument) {
+  using Floats = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  const py::array array = rowsOf(argument, "points", 3);
+  std::vector<Eigen::Vector3f> points(static_cast<std::size_t>(array.shape(0)));
+  Eigen::Map<Floats> all(points.empty() ? nullptr : points[0].data(), array.shape(0), 3);
+  if (py::isinstance<py::array_t<float>>(array))
+    all = Eigen::Map<const Floats>(ArrayOf<float>(array).data(), array.shape(0), 3);
+  else
+    all = Rows(array, "points", 3).values().cast<float>();
   return points;
 }
 
@@ -169,10 +153,7 @@ Eigen::Isometry3d poseOf(const py::object& argument, const std::string& name) {
   if (argument.is_none()) return T;
   const Rows rows(argument, name, 4, 4);
   rows.checkFinite();
-  rows.visit([&T](const auto& at) {
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) T.matrix()(i, j) = at(i, j);
-  });
+  T.matrix() = rows.values();
   const Eigen::Matrix3d R = T.linear();
   if (T.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
     throw py::value_error(name + ": its last row is not 0 0 0 1");
@@ -193,7 +174,7 @@ void addLabels(LabeledCloud& cloud, const py::object& argument, int numClasses) 
                           " whole numbers, or as many rows of " + std::to_string(numClasses) +
                           " probabilities, got " + typeOf(labels) + " of shape " + shapeOf(labels));
   if (areSoft)
-    cloud.probabilities = probabilitiesOf(Rows(labels, "labels", numClasses), numClasses);
+    cloud.probabilities = probabilitiesOf(Rows(labels, "labels", numClasses));
   else
     cloud.classes = kind == 'u' ? idsOf<std::uint64_t>(labels, numClasses)
                                 : idsOf<std::int64_t>(labels, numClasses);

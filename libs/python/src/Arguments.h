@@ -6,7 +6,6 @@
 #include <strict_files/OptionList.h>
 
 #include <Eigen/Geometry>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,54 +16,35 @@ namespace python {
 
 namespace py = pybind11;
 
-/** Numbers of a numpy array that stay where they are, of any layout. */
+/** An array of a type, in C order; one that is so already is not copied. */
 template <class T>
-struct ArrayView {
-  const char* data;
-  py::ssize_t rows, rowStride, columnStride;
+using ArrayOf = py::array_t<T, py::array::c_style | py::array::forcecast |
+                                   py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
-  T operator()(py::ssize_t row, py::ssize_t column) const {
-    T value;  // which need not be aligned
-    std::memcpy(&value, data + row * rowStride + column * columnStride, sizeof(T));
-    return value;
-  }
-};
-
-/** Rows of real numbers: an argument that is an array or can become one. Floats and doubles of the
- * machine's byte order are not copied. */
+/** Rows of real numbers: an argument that is an array or can become one. */
 class Rows {
  public:
+  using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
   /** \throw py::value_error naming the argument, what it is, and what was expected. */
   Rows(const py::object& argument, std::string name, py::ssize_t columns,
        std::optional<py::ssize_t> rows = {});
 
   py::ssize_t size() const { return m_array.shape(0); }
-  /** Calls use(an ArrayView). */
-  template <class F>
-  auto visit(const F& use) const {
-    return m_areFloats ? use(view<float>()) : use(view<double>());
+  Eigen::Map<const Values> values() const {
+    return {m_array.data(), m_array.shape(0), m_array.shape(1)};
   }
   /** \throw py::value_error naming the row: a number in it is not finite. */
   void checkFinite() const;
-  Eigen::Vector3d row(py::ssize_t row) const {
-    return visit(
-        [row](const auto& at) { return Eigen::Vector3d(at(row, 0), at(row, 1), at(row, 2)); });
-  }
+  Eigen::Vector3d row(py::ssize_t row) const { return values().row(row).transpose(); }
 
  private:
-  template <class T>
-  ArrayView<T> view() const {
-    return {static_cast<const char*>(m_array.data()), size(), m_array.strides(0),
-            m_array.strides(1)};
-  }
-
   std::string m_name;
-  py::array m_array;
-  bool m_areFloats;
+  ArrayOf<double> m_array;
 };
 
-/** Points as a map takes them; those that are not finite stay. */
-std::vector<Eigen::Vector3f> pointsOf(const Rows& rows);
+/** Points as a map takes them; those that are not finite stay. \throw py::value_error as Rows */
+std::vector<Eigen::Vector3f> pointsOf(const py::object& argument);
 /** Three numbers that are finite. \throw py::value_error */
 Eigen::Vector3d vectorOf(const py::object& argument, const std::string& name);
 /** None is the identity. \throw py::value_error it is no rigid transformation. */

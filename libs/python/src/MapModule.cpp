@@ -46,7 +46,7 @@ py::dict insert(SharedMap& map, const py::object& points, const py::object& labe
   InsertionOptions options;
   setOptions(options, values);
   LabeledCloud cloud;
-  cloud.points = pointsOf(Rows(points, "points", 3));
+  cloud.points = pointsOf(points);
   addLabels(cloud, labels, map.numClasses());
   const Eigen::Isometry3d T = poseOf(pose, "T_map_sensor");
   return toDict(
@@ -135,8 +135,7 @@ seconds: since the last scan, by which the map ages first if its classes have ha
 options: those of insertion by their names in files: max_range, min_range, rays, threads, ...
 Returns a dict of counts: points, not_finite, near, outside, beyond_range, hit_voxels,
   free_voxels.
-Arrays of any layout and real type are taken; only those that are neither float32 nor float64
-  are converted first.
+Arrays of any layout and real type are taken.
 Raises ValueError naming the argument, the row and the value; TypeError naming an option that
   there is not. The map is then as it was. MemoryError: the map may be lost; clear() or load.)")
       .def(
@@ -192,10 +191,7 @@ A map has any number of readers, and none sees less because of another.)")
 Returns (everything, corners): corners is M x 3 float64, the lowest corner of each tile in
 meters, map frame. everything is True at first, and after clear(): these are all tiles that are
 known in part, and what was known before does not count.)")
-      .def_property_readonly("tile_size", &Follower::tileSize, "Edge of a tile, meters.")
-      .def("__repr__", [](const Follower& follower) {
-        return "<Follower: tiles of " + strict_files::textOf(follower.tileSize()) + " m>";
-      });
+      .def_property_readonly("tile_size", &Follower::tileSize, "Edge of a tile, meters.");
   addChanging(map);
   addFiles(map);
 }

@@ -73,9 +73,8 @@ VehicleOptions vehicleOf(const py::object& argument) {
   if (corners.is_none()) return vehicle;
   const Rows rows(corners, "footprint", 2);
   std::vector<Eigen::Vector2d> points;
-  rows.visit([&](const auto& at) {
-    for (py::ssize_t i = 0; i < at.rows; ++i) points.emplace_back(at(i, 0), at(i, 1));
-  });
+  for (py::ssize_t i = 0; i < rows.size(); ++i)
+    points.emplace_back(rows.values()(i, 0), rows.values()(i, 1));
   vehicle.footprint = semantic_planning::Footprint(points);
   return vehicle;
 }
@@ -136,18 +135,6 @@ class Planner {
               return m_planner.replan(from, startZ);
             }),
             m_map->classes()};
-  }
-  std::string text() const {
-    const ClassOrder& order = m_planner.order();
-    std::string text = "<Planner: ";
-    for (int rank = 0; rank < order.ranks(); ++rank) {
-      const char* before = rank == 0 ? "" : " before ";
-      for (int id = 0; id < order.classes(); ++id)
-        if (order.rank(static_cast<colored_graph::GraphClass>(id)) == rank)
-          text += std::exchange(before, ", ") +
-                  nameOfGround(static_cast<std::size_t>(id), m_map->classes());
-    }
-    return text + ">";
   }
 
  private:
@@ -218,8 +205,7 @@ several levels is meant; None: the lowest.)")
 
 start: x, y, heading, where the vehicle is. What it has of a path is kept if it is free and no
 other one costs 0.5 m less.
-Raises RuntimeError: nothing was planned before.)")
-      .def("__repr__", &Planner::text);
+Raises RuntimeError: nothing was planned before.)");
   map.def("planner", &plannerOf, py::arg("order"), none("vehicle"), py::kw_only(), none("rates"),
           R"(Plans paths that put classes before length.
 

@@ -16,21 +16,24 @@ using semantic_octree::kKeyOfOrigin;
 
 namespace {
 
+/** None: nobody looked there, or it is outside of the map. */
+semantic_octree::SemanticOcTreeNode nodeAt(const SemanticOcTree& tree, const Eigen::Vector3d& p) {
+  octomap::OcTreeKey key;
+  if (!tree.coordToKeyChecked(p.x(), p.y(), p.z(), key)) return {};
+  return tree.search(key);
+}
+
 py::array_t<CellRow> query(const SharedMap& map, const py::object& points) {
   const Rows rows(points, "points", 3);
   rows.checkFinite();
   py::array_t<CellRow> result(rows.size());
   CellRow* cells = result.mutable_data();
   map.read([&](const SemanticOcTree& tree) {
-    rows.visit([&](const auto& at) {
-      octomap::OcTreeKey key;
-      for (py::ssize_t i = 0; i < at.rows; ++i) {
-        CellRow& cell = cells[i] = CellRow{false, 0.5F, {}, {}};
-        if (!tree.coordToKeyChecked(at(i, 0), at(i, 1), at(i, 2), key)) continue;
-        const auto node = tree.search(key);
-        if ((cell.known = static_cast<bool>(node))) describe(tree, node, cell);
-      }
-    });
+    for (py::ssize_t i = 0; i < rows.size(); ++i) {
+      CellRow& cell = cells[i] = CellRow{false, 0.5F, {}, {}};
+      const auto node = nodeAt(tree, rows.row(i));
+      if ((cell.known = static_cast<bool>(node))) describe(tree, node, cell);
+    }
   });
   return result;
 }
@@ -43,11 +46,8 @@ py::array_t<double> distributions(const SharedMap& map, const py::object& points
   double* numbers = result.mutable_data();
   std::fill_n(numbers, rows.size() * width, std::nan(""));
   map.read([&](const SemanticOcTree& tree) {
-    octomap::OcTreeKey key;
     for (py::ssize_t i = 0; i < rows.size(); ++i) {
-      const Eigen::Vector3d p = rows.row(i);
-      if (!tree.coordToKeyChecked(p.x(), p.y(), p.z(), key)) continue;
-      const auto node = tree.search(key);
+      const auto node = nodeAt(tree, rows.row(i));
       if (!node) continue;
       const std::vector<double> distribution = tree.distribution(node);
       std::copy(distribution.begin(), distribution.end(), numbers + i * width);

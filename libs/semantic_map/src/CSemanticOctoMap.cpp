@@ -64,8 +64,7 @@ void CSemanticOctoMap::copyAllButTree(const CSemanticOctoMap& o) {
   m_abstractionOptions = o.m_abstractionOptions;
   m_lastInsertion = o.m_lastInsertion;
   m_observationClock = o.m_observationClock;
-  m_converter.reset();
-  m_likelihoodCache->clear();
+  auxParticleFilterCleanUp();
 }
 
 void CSemanticOctoMap::setAbstraction(const TAbstractionOptions& options) {
@@ -90,8 +89,6 @@ CSemanticOctoMap::Ptr CSemanticOctoMap::compress() {
   return compressed;
 }
 
-void CSemanticOctoMap::auxParticleFilterCleanUp() { m_likelihoodCache->clear(); }
-
 void CSemanticOctoMap::internal_clear() {
   m_tree.clear();
   m_observationClock = ObservationClock();
@@ -105,13 +102,6 @@ std::string CSemanticOctoMap::asString() const {
        << " classes, " << m_tree.getNumLeafNodes() << " leaves, "
        << strict_files::sizeText(m_tree.memoryUsage());
   return text.str();
-}
-
-ScanConverter& CSemanticOctoMap::converter() {
-  const auto& options = insertionOptions.conversion;
-  if (!m_converter || !m_converter->isFor(m_tree.classes(), options))
-    m_converter = std::make_unique<CachedConverter>(m_tree.classes(), options);
-  return m_converter->converter;
 }
 
 bool CSemanticOctoMap::internal_insertObservation(const mrpt::obs::CObservation& observation,
@@ -135,7 +125,8 @@ bool CSemanticOctoMap::internal_insertObservation(const mrpt::obs::CObservation&
 
 void CSemanticOctoMap::insertAccepted(const mrpt::obs::CObservation& observation,
                                       const CPose3D& T_map_robot) {
-  const LabeledScan scan = *converter().convert(observation);
+  const LabeledScan scan =
+      *ScanConverter(m_tree.classes(), insertionOptions.conversion).convert(observation);
   m_lastInsertion.conversion = scan.counts;
   m_lastInsertion.map = insertScan(scan, T_map_robot);
 }

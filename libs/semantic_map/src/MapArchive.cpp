@@ -47,11 +47,6 @@ void CSemanticOctoMap::serializeTo(CArchive& out) const {
 }
 
 void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
-  if (version == 1)
-    throw std::runtime_error(
-        "a semantic octree map as version 0.1.0 archived it in its early days, without the names "
-        "of "
-        "its options: load its .semantic file instead");
   if (version != 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   checkMayBecomeAnother();
   mrpt::maps::TMapGenericParams generic;
@@ -79,6 +74,7 @@ void CSemanticOctoMap::serializeFrom(CArchive& in, uint8_t version) {
   filter.softLabelFloor = m_tree.filterParameters().softLabelFloor;
   likelihoodOptions = likelihood;
   renderingOptions = rendering;
+  auxParticleFilterCleanUp();
   m_lastInsertion = {};
   m_observationClock = ObservationClock();
 }

@@ -1,5 +1,4 @@
 #include <labeled_cloud/Rawlogs.h>
-#include <map_operations/MapOperations.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_map/MapFiles.h>
 #include <semantic_types/ClassTable.h>
@@ -13,25 +12,16 @@ namespace semantic_map {
 
 using semantic_octree::CellState;
 using semantic_octree::SemanticOcTree;
-using semantic_octree::SmoothedView;
 using semantic_types::ClassId;
 using semantic_types::ClassTable;
 
 namespace {
 
+/** Calls action(leaf). */
 template <class Action>
-void forEachPoint(const SemanticOcTree& tree, const PointOptions& options, Action action) {
+void forEachPoint(const SemanticOcTree& tree, bool free, Action action) {
   for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf)
-    if (options.free || leaf->getLogOdds() > 0) action(leaf);
-}
-
-/** Calls action(leaf, state). */
-template <class Action>
-void forEachState(const SemanticOcTree& tree, const PointOptions& options, Action action) {
-  const SmoothedView view(tree, options.smoothing);
-  forEachPoint(tree, options, [&](const auto& leaf) {
-    action(leaf, leaf->getLogOdds() > 0 ? view.query(leaf.getKey()) : tree.query(*leaf));
-  });
+    if (free || leaf->getLogOdds() > 0) action(leaf);
 }
 
 template <typename... Values>
@@ -58,11 +48,12 @@ void checked(const std::ostream& out) {
 
 }  // namespace
 
-void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions& options) {
+void writePly(std::ostream& out, const SemanticOcTree& tree, bool free) {
   std::size_t points = 0;
-  forEachPoint(tree, options, [&points](const auto&) { ++points; });
+  forEachPoint(tree, free, [&points](const auto&) { ++points; });
   writePlyHeader(out, tree.classes(), points);
-  forEachState(tree, options, [&](const auto& leaf, const CellState& state) {
+  forEachPoint(tree, free, [&](const auto& leaf) {
+    const CellState state = tree.query(*leaf);
     const auto color = colorOf(state.likeliestClass, tree.classes());
     writeBytes(out, float(leaf.getX()), float(leaf.getY()), float(leaf.getZ()), color.r, color.g,
                color.b, state.likeliestClass, float(state.probability), float(state.occupancy),
@@ -71,10 +62,11 @@ void writePly(std::ostream& out, const SemanticOcTree& tree, const PointOptions&
   checked(out);
 }
 
-void writeCsv(std::ostream& out, const SemanticOcTree& tree, const PointOptions& options) {
+void writeCsv(std::ostream& out, const SemanticOcTree& tree, bool free) {
   const strict_files::ClassicNumbers classic(out);
   out << "x,y,z,size,occupancy,class,name,probability\n" << std::setprecision(7);
-  forEachState(tree, options, [&](const auto& leaf, const CellState& state) {
+  forEachPoint(tree, free, [&](const auto& leaf) {
+    const CellState state = tree.query(*leaf);
     const ClassId id = state.likeliestClass;
     out << leaf.getX() << ',' << leaf.getY() << ',' << leaf.getZ() << ',' << leaf.getSize() << ','
         << state.occupancy << ',' << int{id} << ','

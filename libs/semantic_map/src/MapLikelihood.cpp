@@ -1,6 +1,4 @@
-#include <labeled_cloud/CObservationLabeledCloud.h>
-#include <mrpt/io/CStream.h>
-#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/SemanticOcTree.h>
@@ -8,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string_view>
+#include <utility>
 
 #include "LikelihoodCache.h"
 
@@ -129,10 +127,46 @@ class BeamLikelihood {
 
 }  // namespace
 
+/** What a scan is made of: two with the same have the same points. Reading each byte once takes a
+ * small part of the time that it takes to make points of them. */
+std::string CSemanticOctoMap::sourceOf(const mrpt::obs::CObservation& observation) const {
+  mrpt::io::CMemoryStream bytes;
+  auto archive = mrpt::serialization::archiveFrom(bytes);
+  archive << observation;
+  insertionOptions.writeTo(archive);
+  return {static_cast<const char*>(bytes.getRawBufferData()), bytes.getTotalBytesCount()};
+}
+
+/** Null if it cannot be used. The reason goes to the logger as a warning, unless it is the same as
+ * the last. */
 std::shared_ptr<const LabeledScan> CSemanticOctoMap::scanForLikelihood(
     const mrpt::obs::CObservation& observation) const {
-  return m_likelihoodCache->scanOf(observation, m_tree.classes(), insertionOptions.conversion,
-                                   m_logger);
+  if (!labeled_cloud::ScanConverter::accepts(observation)) return nullptr;
+  LikelihoodCache& cache = *m_likelihoodCache;
+  const std::lock_guard lock(cache.mutex);
+  const std::string refusalBefore = std::exchange(cache.refusal, {});
+  try {
+    std::string source = sourceOf(observation);
+    if (source == cache.source) return cache.scan;
+    auto scan = labeled_cloud::ScanConverter(m_tree.classes(), insertionOptions.conversion)
+                    .convert(observation);
+    if (scan->cloud.empty()) throw std::invalid_argument("no point with a usable range");
+    cache.scan = std::make_shared<LabeledScan>(std::move(*scan));
+    cache.source = std::move(source);
+  } catch (const std::exception& e) {
+    cache.scan.reset();
+    cache.source.clear();
+    cache.refusal = e.what();
+    if (cache.refusal != refusalBefore)
+      m_logger.logStr(mrpt::system::LVL_WARN, "No likelihood: " + cache.refusal);
+  }
+  return cache.scan;
+}
+
+void CSemanticOctoMap::auxParticleFilterCleanUp() {
+  const std::lock_guard lock(m_likelihoodCache->mutex);
+  m_likelihoodCache->source.clear();
+  m_likelihoodCache->scan.reset();
 }
 
 bool CSemanticOctoMap::internal_canComputeObservationLikelihood(
@@ -152,123 +186,6 @@ double CSemanticOctoMap::internal_computeObservationLikelihood(
   for (std::size_t i = 0; i < scan->cloud.size(); i += likelihoodOptions.decimation)
     sum += likelihood(i);
   return likelihoodOptions.pointWeight * sum;
-}
-
-using labeled_cloud::CObservationLabeledCloud;
-using mrpt::obs::CObservation;
-using mrpt::obs::CObservation3DRangeScan;
-using mrpt::obs::TPixelLabelInfo;
-using mrpt::obs::TPixelLabelInfoBase;
-
-namespace {
-
-/** Takes bytes and makes a number of them. */
-class HashStream : public mrpt::io::CStream {
- public:
-  size_t Write(const void* buffer, size_t count) override {
-    const std::string_view bytes(static_cast<const char*>(buffer), count);
-    m_value = (m_value ^ std::hash<std::string_view>()(bytes)) * 0x9E3779B97F4A7C15u;
-    return count;
-  }
-  template <class T>
-  void addAll(const T& values) {
-    if (values.size() > 0) Write(values.data(), values.size() * sizeof(values.data()[0]));
-  }
-  std::uint64_t value() const { return m_value; }
-
-  size_t Read(void*, size_t) override { return 0; }
-  std::uint64_t Seek(int64_t, TSeekOrigin) override { return 0; }
-  std::uint64_t getTotalBytesCount() const override { return 0; }
-  std::uint64_t getPosition() const override { return 0; }
-
- private:
-  std::uint64_t m_value = 1;
-};
-
-template <unsigned BYTES>
-void addIf(const TPixelLabelInfoBase& labels, HashStream& hash) {
-  if (const auto* fields = dynamic_cast<const TPixelLabelInfo<BYTES>*>(&labels))
-    hash.addAll(fields->pixelLabels);
-}
-
-void addLabels(const TPixelLabelInfoBase& labels, HashStream& hash) {
-  addIf<1>(labels, hash), addIf<2>(labels, hash), addIf<3>(labels, hash);
-  addIf<4>(labels, hash), addIf<8>(labels, hash);
-}
-
-void addRangeScan(const CObservation3DRangeScan& scan, HashStream& hash) {
-  auto archive = mrpt::serialization::archiveFrom(hash);
-  archive << scan.sensorPose << scan.sensorLabel << scan.cameraParams << scan.rangeUnits
-          << scan.hasRangeImage << scan.hasPoints3D << scan.range_is_depth
-          << scan.rangeImage_getExternalStorageFile("") << scan.points3D_getExternalStorageFile();
-  hash.addAll(scan.rangeImage);
-  for (const auto* coordinates : {&scan.points3D_x, &scan.points3D_y, &scan.points3D_z})
-    hash.addAll(*coordinates);
-  if (!scan.pixelLabels) return;
-  for (const auto& [id, name] : scan.pixelLabels->pixelLabelNames) archive << id << name;
-  addLabels(*scan.pixelLabels, hash);
-}
-
-void addLabeledCloud(const CObservationLabeledCloud& observation, HashStream& hash) {
-  auto archive = mrpt::serialization::archiveFrom(hash);
-  archive << observation.sensorPose << observation.sensorLabel;
-  for (const std::string& name : observation.classNames) archive << name;
-  hash.addAll(observation.cloud.points);
-  hash.addAll(observation.cloud.classes);
-  hash.addAll(observation.cloud.probabilities);
-}
-
-/** A number that stands for all that a scan is made of, its labels and the sensor's pose included.
- * Two observations with one number have the same points. Reads each byte once, which takes a small
- * part of the time that it takes to make points of them. */
-std::uint64_t fingerprintOf(const CObservation& observation) {
-  HashStream hash;
-  if (const auto* scan = dynamic_cast<const CObservation3DRangeScan*>(&observation))
-    addRangeScan(*scan, hash);
-  else if (const auto* cloud = dynamic_cast<const CObservationLabeledCloud*>(&observation))
-    addLabeledCloud(*cloud, hash);
-  else
-    mrpt::serialization::archiveFrom(hash) << observation;
-  return hash.value();
-}
-
-}  // namespace
-
-std::shared_ptr<const LabeledScan> LikelihoodCache::scanOf(
-    const CObservation& observation, const semantic_types::ClassTable& classes,
-    const labeled_cloud::ScanConverterOptions& options, mrpt::system::COutputLogger& logger) {
-  if (!labeled_cloud::ScanConverter::accepts(observation)) return nullptr;
-  const std::uint64_t fingerprint = fingerprintOf(observation);
-  const std::lock_guard lock(m_mutex);
-  const bool ready = m_converter && m_converter->isFor(classes, options);
-  if (ready && fingerprint == m_fingerprint) return m_scan;
-  if (!ready) m_converter = std::make_unique<CachedConverter>(classes, options);
-  convert(observation, logger);
-  m_fingerprint = fingerprint;
-  return m_scan;
-}
-
-void LikelihoodCache::convert(const CObservation& observation,
-                              mrpt::system::COutputLogger& logger) {
-  const std::string refusalBefore = m_refusal;
-  m_refusal.clear();
-  try {
-    const auto scan = std::make_shared<LabeledScan>(*m_converter->converter.convert(observation));
-    if (scan->cloud.empty()) throw std::invalid_argument("no point with a usable range");
-    m_scan = scan;
-  } catch (const std::exception& e) {
-    m_scan = nullptr;
-    m_refusal = e.what();
-    if (m_refusal != refusalBefore)
-      logger.logStr(mrpt::system::LVL_WARN, "No likelihood: " + m_refusal);
-  }
-}
-
-void LikelihoodCache::clear() {
-  const std::lock_guard lock(m_mutex);
-  m_converter.reset();
-  m_scan.reset();
-  m_refusal.clear();
 }
 
 }  // namespace semantic_map

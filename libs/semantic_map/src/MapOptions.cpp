@@ -140,7 +140,6 @@ const strict_files::Choices<TRenderingOptions::Coloring>& choicesOf(TRenderingOp
   using Coloring = TRenderingOptions::Coloring;
   static const strict_files::Choices<Coloring> choices = {{"class", Coloring::Class},
                                                           {"probability", Coloring::Probability},
-                                                          {"height", Coloring::Height},
                                                           {"entropy", Coloring::Entropy}};
   return choices;
 }

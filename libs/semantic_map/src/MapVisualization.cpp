@@ -1,6 +1,5 @@
 #include <mrpt/img/TColor.h>
 #include <mrpt_compat/Drawing.h>
-#include <mrpt_compat/Images.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_map/MapFiles.h>
@@ -10,8 +9,6 @@
 #include <semantic_types/ClassTable.h>
 #include <strict_files/OutputFiles.h>
 #include <tree_abstraction/Information.h>
-
-#include <algorithm>
 
 #include "FolderOfMap.h"
 
@@ -24,55 +21,22 @@ using tree_abstraction::relativeEntropy;
 
 namespace {
 
-/** Colors of occupied cells in a scene. */
-class CellColors {
- public:
-  CellColors(const semantic_octree::SemanticOcTree& tree, const TRenderingOptions& options);
-  /** \param height of the cell's center, m */
-  mrpt::img::TColor operator()(const semantic_octree::SemanticOcTree::Node& node,
-                               double height) const;
-
- private:
-  const semantic_octree::SemanticOcTree& m_tree;
-  TRenderingOptions::Coloring m_coloring;
-  double m_lowest = 0, m_highest = 0;
-};
-
 mrpt::img::TColor mrptColor(const semantic_types::Color& c) { return {c.r, c.g, c.b}; }
 
-CellColors::CellColors(const semantic_octree::SemanticOcTree& tree,
-                       const TRenderingOptions& options)
-    : m_tree(tree), m_coloring(options.coloring) {
-  double x, y;
-  tree.getMetricMin(x, y, m_lowest);
-  tree.getMetricMax(x, y, m_highest);
-  m_lowest = std::max(m_lowest, options.minHeight);
-  m_highest = std::min(m_highest, options.maxHeight);
-}
-
-mrpt::img::TColor CellColors::operator()(const semantic_octree::SemanticOcTree::Node& node,
-                                         double height) const {
-  switch (m_coloring) {
-    case TRenderingOptions::Coloring::Probability:
-      return mrptColor(trafficLight(m_tree.query(node).probability));
-    case TRenderingOptions::Coloring::Height: {
-      const double range = std::max(m_highest - m_lowest, 1e-6);
-      return mrpt_compat::colorAt(mrpt::img::cmJET,
-                                  std::clamp((height - m_lowest) / range, 0.0, 1.0));
-    }
-    case TRenderingOptions::Coloring::Entropy:
-      return mrptColor(trafficLight(1 - relativeEntropy(m_tree.distribution(node))));
-    case TRenderingOptions::Coloring::Class:
-      break;
-  }
-  return mrptColor(semantic_types::colorOf(m_tree.query(node).likeliestClass, m_tree.classes()));
+mrpt::img::TColor colorOf(const SemanticOcTree& tree, const SemanticOcTree::Node& node,
+                          TRenderingOptions::Coloring coloring) {
+  if (coloring == TRenderingOptions::Coloring::Probability)
+    return mrptColor(trafficLight(tree.query(node).probability));
+  if (coloring == TRenderingOptions::Coloring::Entropy)
+    return mrptColor(trafficLight(1 - relativeEntropy(tree.distribution(node))));
+  return mrptColor(semantic_types::colorOf(tree.query(node).likeliestClass, tree.classes()));
 }
 
 /** Fills a set of boxes with the cells that the options ask for. */
 class VoxelSets {
  public:
   VoxelSets(const SemanticOcTree& tree, const TRenderingOptions& options)
-      : m_tree(tree), m_options(options), m_color(tree, options) {
+      : m_tree(tree), m_options(options) {
     m_voxels->resizeVoxelSets(2);
     m_voxels->setVisualizationMode(COctoMapVoxels::FIXED);
     m_voxels->enableLights(true);
@@ -83,10 +47,11 @@ class VoxelSets {
     if (center.z < m_options.minHeight || center.z > m_options.maxHeight) return;
     const bool occupied = m_tree.isNodeOccupied(node);
     if (!occupied && !m_options.free) return;
-    m_voxels->push_back_Voxel(
-        occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED
-                 : mrpt_compat::drawing::VOXEL_SET_FREESPACE,
-        {center, size, occupied ? m_color(node, center.z) : mrpt::img::TColor(160, 200, 230, 25)});
+    m_voxels->push_back_Voxel(occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED
+                                       : mrpt_compat::drawing::VOXEL_SET_FREESPACE,
+                              {center, size,
+                               occupied ? colorOf(m_tree, node, m_options.coloring)
+                                        : mrpt::img::TColor(160, 200, 230, 25)});
   }
 
   COctoMapVoxels::Ptr take() { return m_voxels; }
@@ -94,7 +59,6 @@ class VoxelSets {
  private:
   const SemanticOcTree& m_tree;
   TRenderingOptions m_options;
-  CellColors m_color;
   COctoMapVoxels::Ptr m_voxels = COctoMapVoxels::Create();
 };
 

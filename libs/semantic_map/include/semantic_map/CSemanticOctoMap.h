@@ -38,8 +38,7 @@ class ObservationClock {
   std::optional<mrpt::Clock::time_point> m_latest;
 };
 
-struct CachedConverter;
-class LikelihoodCache;
+struct LikelihoodCache;
 
 /** What came of an observation. */
 struct InsertionResult {
@@ -156,11 +155,8 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   /** Boxes in the classes' colors, see renderingOptions; nothing if
    * genericMapParams.enableSaveAs3DObject is false. */
   void getVisualizationInto(mrpt_compat::drawing::CSetOfObjects& o) const override;
-  /** Pairs the points of a points map with the occupied voxels of this one, as CPointsMap does with
-   * its points, for ICP. Each goes with the voxel whose center is nearest (2D: seen from above).
-   * globalIdx numbers the voxels of one result.
-   * \throw std::invalid_argument the other map is not, and has not, a points map; bad parameters.
-   */
+  /** Pairs the points of a points map with those of getAsSimplePointsMap(), as that does, for ICP.
+   * \throw std::invalid_argument the other map is not, and has not, a points map. */
   void determineMatching2D(const mrpt::maps::CMetricMap* other,
                            const mrpt::poses::CPose2D& T_this_other,
                            mrpt::tfest::TMatchingPairList& pairs,
@@ -225,7 +221,10 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   void draw(const semantic_octree::SemanticOcTree& tree,
             mrpt_compat::drawing::CSetOfObjects& o) const;
   void copyAllButTree(const CSemanticOctoMap& o);
-  labeled_cloud::ScanConverter& converter();
+  /** The centers of voxels, for questions in the plane: a points map of MRPT's that was asked one
+   * in space answers none of these, and the other way round. */
+  const mrpt::maps::CSimplePointsMap& centersFromAbove() const;
+  std::string sourceOf(const mrpt::obs::CObservation& observation) const;
   std::shared_ptr<const labeled_cloud::LabeledScan> scanForLikelihood(
       const mrpt::obs::CObservation& observation) const;
   void insertAccepted(const mrpt::obs::CObservation& observation,
@@ -239,11 +238,10 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   InsertionResult m_lastInsertion;
   ObservationClock m_observationClock;
   mutable mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
-  std::unique_ptr<CachedConverter> m_converter;
   std::unique_ptr<LikelihoodCache> m_likelihoodCache;
   mutable std::mutex m_centersMutex;
   mutable std::optional<semantic_octree::MapFollower> m_changes;  ///< since the centers were made
-  mutable std::shared_ptr<mrpt::maps::CSimplePointsMap> m_centers;
+  mutable std::shared_ptr<mrpt::maps::CSimplePointsMap> m_centers, m_centersFromAbove;
 };
 
 /** Registers the map and labeled_cloud's observation with MRPT's factories. Called when the library

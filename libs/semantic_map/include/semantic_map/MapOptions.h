@@ -123,7 +123,6 @@ struct TRenderingOptions : public TNamedOptions<TRenderingOptions> {
   enum class Coloring {
     Class,        ///< color of the likeliest class, gray where no class was seen
     Probability,  ///< of the likeliest class: red (0) over yellow to green (1)
-    Height,       ///< blue (lowest) to red (highest)
     Entropy       ///< of free space and classes: green (certain) over yellow to red (all alike)
   };
   Coloring coloring = Coloring::Class;
