@@ -1,5 +1,4 @@
 #pragma once
-#include <mrpt/io/CStream.h>
 #include <strict_files/Memory.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -78,38 +77,18 @@ class ZstdFile {
   std::string m_damage;
 };
 
-class CompressedInputStream;
-
-/** Whether a piece of memory is in proportion to a file that objects are read from. */
-class MemoryOfObjects {
- public:
-  explicit MemoryOfObjects(const std::filesystem::path& file) : m_file(file) {}
-  /** \param delivered bytes of the file so far, unpacked */
-  void beginObject(std::uint64_t delivered) { m_small = 0, m_begin = delivered; }
-  bool allows(std::size_t piece, std::uint64_t delivered);
-
- private:
-  bool unpacksTo(std::uint64_t size);
-
-  std::filesystem::path m_file;
-  std::unique_ptr<CompressedInputStream> m_ahead;  ///< looks how much there is
-  std::uint64_t m_small = 0;  ///< in all of the object's pieces that are not large
-  std::uint64_t m_begin = 0;  ///< where the object begins
-};
-
 /** Reads a file compressed with gzip or, as later releases of MRPT write them, with Zstandard; a
  * plain one as it is.
  *
  * Unlike MRPT's streams it tells a file that was cut off or altered from one that ends: damage()
  * says so afterwards. It does not throw while reading, since MRPT takes any exception in front of
  * an object for the end of the file. */
-class CompressedInputStream : public mrpt::io::CStream {
+class CompressedInputStream {
  public:
   /** \throw std::runtime_error naming the file, if it cannot be opened. */
-  explicit CompressedInputStream(const std::filesystem::path& file) : m_memory(file) {
+  explicit CompressedInputStream(const std::filesystem::path& file) : m_file(file) {
     if (!std::filesystem::is_regular_file(file))
       throw std::runtime_error(file.string() + ": there is no such file");
-    m_fileSize = std::filesystem::file_size(file);
     if (ZstdFile::isOne(file)) {
       m_zstd = std::make_unique<ZstdFile>(file);
       return;
@@ -119,32 +98,20 @@ class CompressedInputStream : public mrpt::io::CStream {
     gzbuffer(m_gzip.get(), 1u << 18);
   }
 
-  std::size_t Read(void* buffer, std::size_t count) override {
-    char* const bytes = static_cast<char*>(buffer);
-    const std::size_t done = m_zstd ? m_zstd->read(bytes, count) : readGzip(bytes, count);
+  /** \return how many bytes came: fewer at the end, and where the file is damaged. */
+  std::size_t read(char* buffer, std::size_t count) {
+    const std::size_t done = m_zstd ? m_zstd->read(buffer, count) : readGzip(buffer, count);
     m_delivered += done;
     return done;
   }
-  /** \throw std::logic_error always: this stream only reads, from the first byte to the last. */
-  std::size_t Write(const void*, std::size_t) override {
-    throw std::logic_error("CompressedInputStream: cannot be written to");
-  }
-  std::uint64_t Seek(std::int64_t, TSeekOrigin) override {
-    throw std::logic_error("CompressedInputStream: cannot seek");
-  }
-
-  /** Size of the file, compressed. */
-  std::uint64_t getTotalBytesCount() const override { return m_fileSize; }
   /** Bytes of the file taken so far, compressed. */
-  std::uint64_t getPosition() const override {
-    if (m_zstd) return m_zstd->position();
-    return std::clamp<std::int64_t>(gzoffset(m_gzip.get()), 0, m_fileSize);
+  std::uint64_t position() const {
+    return m_zstd ? m_zstd->position() : std::max<std::int64_t>(gzoffset(m_gzip.get()), 0);
   }
-  /** Bytes delivered so far. */
-  std::uint64_t delivered() const { return m_delivered; }
-  /** For the object that is read next. */
+  /** Whether a piece of memory is in proportion to the file, for the object that is read next. */
   strict_files::AllocationLimit::Allows& allows() {
-    m_memory.beginObject(m_delivered);
+    m_small = 0;
+    m_begin = m_delivered;
     return m_allows;
   }
   /** What is wrong with the compressed data met so far, empty if nothing is. */
@@ -155,31 +122,27 @@ class CompressedInputStream : public mrpt::io::CStream {
     void operator()(gzFile file) const { gzclose_r(file); }
   };
   std::size_t readGzip(char* buffer, std::size_t count) {
-    std::size_t done = 0;
-    while (done < count) {
-      const std::size_t piece = std::min<std::size_t>(count - done, 1u << 30);
-      const int got = gzread(m_gzip.get(), buffer + done, piece);
-      noteDamage();
-      if (got <= 0) break;
-      done += got;
-    }
-    return done;
-  }
-  /** After each read: since zlib 1.3.2 the next one forgets it. */
-  void noteDamage() {
+    const std::size_t done = gzfread(buffer, 1, count, m_gzip.get());
+    // After each read: since zlib 1.3.2 the next one forgets it.
     int code = Z_OK;
     const char* message = gzerror(m_gzip.get(), &code);
     if (code == Z_BUF_ERROR) m_damage = "the compressed data is cut off";
     if (code != Z_BUF_ERROR && code != Z_OK) m_damage = message;
+    return done;
   }
+  bool isInProportion(std::size_t piece);
+  bool unpacksTo(std::uint64_t size);
 
+  std::filesystem::path m_file;
   std::unique_ptr<ZstdFile> m_zstd;         ///< of such a file
   std::unique_ptr<gzFile_s, Close> m_gzip;  ///< of any other
-  std::uint64_t m_fileSize = 0, m_delivered = 0;
   std::string m_damage;
-  MemoryOfObjects m_memory;
+  std::uint64_t m_delivered = 0;                   ///< bytes of the file, unpacked
+  std::unique_ptr<CompressedInputStream> m_ahead;  ///< looks how much there is
+  std::uint64_t m_begin = 0;                       ///< where the object begins
+  std::uint64_t m_small = 0;  ///< in all of the object's pieces that are not large
   strict_files::AllocationLimit::Allows m_allows = [this](std::size_t piece) {
-    return m_memory.allows(piece, m_delivered);
+    return isInProportion(piece);
   };
 };
 

@@ -24,19 +24,19 @@ using mrpt::serialization::CSerializable;
 
 /** Lists that grow take twice what is in them; pointers, short texts and particles need more than
  * they have in the file. */
-bool MemoryOfObjects::allows(std::size_t piece, std::uint64_t delivered) {
+bool CompressedInputStream::isInProportion(std::size_t piece) {
   constexpr std::size_t kLarge = 16 << 20, kSmallOnes = 64 << 20, kPerByte = 4,
                         kPerByteOfSmall = 64;
   if (piece > kLarge) return unpacksTo(piece / kPerByte);
   m_small += piece;
-  return m_small <= kSmallOnes + kPerByteOfSmall * (delivered - m_begin);
+  return m_small <= kSmallOnes + kPerByteOfSmall * (m_delivered - m_begin);
 }
 
-bool MemoryOfObjects::unpacksTo(std::uint64_t size) try {
+bool CompressedInputStream::unpacksTo(std::uint64_t size) try {
   if (!m_ahead) m_ahead = std::make_unique<CompressedInputStream>(m_file);
   std::array<char, 1 << 14> some{};
-  while (m_ahead->delivered() < size)
-    if (m_ahead->Read(some.data(), some.size()) == 0) return false;
+  while (m_ahead->m_delivered < size)
+    if (m_ahead->read(some.data(), some.size()) == 0) return false;
   return true;
 } catch (const std::exception&) {
   return false;  // it is no longer there
@@ -124,7 +124,7 @@ std::vector<std::shared_ptr<Object>> RawlogObjects::objects() {
 std::size_t RawlogObjects::take(char* buffer, std::size_t size) {
   const std::size_t first = m_begin.copy(buffer, size);
   m_begin.erase(0, first);
-  return first < size ? first + m_stream.Read(buffer + first, size - first) : first;
+  return first < size ? first + m_stream.read(buffer + first, size - first) : first;
 }
 
 /** Whether an object of this class may come now. MRPT follows what a movement's estimate is, unless

@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "CompressedInputStream.h"
 #include "PointLabels.h"
@@ -88,7 +89,7 @@ RawlogReader::RawlogReader(const std::filesystem::path& file)
 
 RawlogReader::~RawlogReader() = default;
 
-std::uint64_t RawlogReader::bytesRead() const { return m_stream->getPosition(); }
+std::uint64_t RawlogReader::bytesRead() const { return m_stream->position(); }
 
 void RawlogReader::fail(const std::string& what) {
   m_ended = true;
@@ -137,67 +138,38 @@ std::optional<RawlogEntry> RawlogReader::next() {
   return entry;
 }
 
-namespace {
-
-/** gzip's level, 1 to 9. Higher levels hardly shrink labeled clouds and take several times longer.
+/** Of gzip's levels, 1 to 9, higher ones hardly shrink labeled clouds and take several times
+ * longer.
  */
-constexpr int kCompression = 2;
-
-}  // namespace
-
-RawlogWriter::RawlogWriter(const std::filesystem::path& file)
-    : m_file(file), m_stream(std::make_unique<GzipOutputStream>(m_file.path(), kCompression)) {}
-
-RawlogWriter::~RawlogWriter() = default;
-
-void RawlogWriter::write(const mrpt::serialization::CSerializable& object) {
-  auto archive = mrpt::serialization::archiveFrom(*m_stream);
-  archive << object;
-}
-
-void RawlogWriter::finish() {
-  m_stream->close();
-  m_file.commit();
-}
-
-GzipOutputStream::GzipOutputStream(const std::filesystem::path& file, int compression)
-    : m_path(file) {
-  const std::string mode = "wb" + std::to_string(compression);
-  m_file = gzopen(file.c_str(), mode.c_str());
+GzipArchive::GzipArchive(const std::filesystem::path& file)
+    : m_path(file), m_file(gzopen(file.c_str(), "wb2")) {
   if (!m_file) fail();
 }
 
-GzipOutputStream::~GzipOutputStream() {
+GzipArchive::~GzipArchive() {
   if (m_file) gzclose_w(m_file);
 }
 
-std::size_t GzipOutputStream::Write(const void* buffer, std::size_t count) {
-  for (std::size_t done = 0; done < count;) {
-    const auto piece = static_cast<unsigned>(std::min<std::size_t>(count - done, 1u << 30));
-    const int written = gzwrite(m_file, static_cast<const char*>(buffer) + done, piece);
-    if (written <= 0) fail();
-    done += written;
-  }
-  m_taken += count;
+std::size_t GzipArchive::write(const void* buffer, std::size_t count) {
+  if (gzfwrite(buffer, 1, count, m_file) != count) fail();
   return count;
 }
 
-void GzipOutputStream::close() {
-  const int result = gzclose_w(m_file);
-  m_file = nullptr;
-  if (result != Z_OK) fail();
+std::size_t GzipArchive::read(void*, std::size_t) {
+  throw std::logic_error("GzipArchive: cannot be read from");
 }
 
-void GzipOutputStream::fail() const {
+void GzipArchive::close() {
+  if (gzclose_w(std::exchange(m_file, nullptr)) != Z_OK) fail();
+}
+
+void GzipArchive::fail() const {
   throw std::runtime_error(m_path.string() + ": cannot be written: " + std::strerror(errno));
 }
 
-std::size_t GzipOutputStream::Read(void*, std::size_t) {
-  throw std::logic_error("GzipOutputStream: cannot be read from");
-}
-
-std::uint64_t GzipOutputStream::Seek(std::int64_t, TSeekOrigin) {
-  throw std::logic_error("GzipOutputStream: cannot seek");
+void RawlogWriter::finish() {
+  m_archive.close();
+  m_file.commit();
 }
 
 namespace {

@@ -77,10 +77,9 @@ void writeCsv(std::ostream& out, const SemanticOcTree& tree, bool free) {
 }
 
 void writeScene(const mrpt_compat::Scene& scene, const std::filesystem::path& file) {
-  constexpr int kCompression = 2;  // of 1 to 9
-  labeled_cloud::GzipOutputStream stream(file, kCompression);
-  mrpt::serialization::archiveFrom(stream) << scene;
-  stream.close();
+  labeled_cloud::GzipArchive archive(file);
+  archive << scene;
+  archive.close();
 }
 
 }  // namespace semantic_map

@@ -1,7 +1,7 @@
 #pragma once
-#include <mrpt/io/CStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservation.h>
+#include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/CSerializable.h>
 #include <semantic_types/ClassTable.h>
 #include <strict_files/OutputFiles.h>
@@ -56,46 +56,38 @@ class RawlogReader {
   bool m_ended = false;
 };
 
-/** Writes a gzip file. Unlike MRPT's own stream it tells when the disk is full. */
-class GzipOutputStream : public mrpt::io::CStream {
+/** Writes objects into a gzip file. Unlike MRPT's own stream it tells when the disk is full. */
+class GzipArchive : public mrpt::serialization::CArchive {
  public:
   /** \throw std::runtime_error naming the file, if it cannot be opened. */
-  GzipOutputStream(const std::filesystem::path& file, int compression);
-  ~GzipOutputStream() override;
-  GzipOutputStream(const GzipOutputStream&) = delete;
-  GzipOutputStream& operator=(const GzipOutputStream&) = delete;
+  explicit GzipArchive(const std::filesystem::path& file);
+  ~GzipArchive() override;
+  GzipArchive(const GzipArchive&) = delete;
+  GzipArchive& operator=(const GzipArchive&) = delete;
 
-  /** \throw std::runtime_error naming the file, if not everything can be written. */
-  std::size_t Write(const void* buffer, std::size_t count) override;
-  /** Writes what is left. \throw std::runtime_error as Write(). */
+  /** Writes what is left; as `<<`, it throws if that cannot be.
+   * \throw std::runtime_error naming the file */
   void close();
 
-  /** \throw std::logic_error always: this stream only writes, from the first byte to the last. */
-  std::size_t Read(void*, std::size_t) override;
-  std::uint64_t Seek(std::int64_t, TSeekOrigin) override;
-
-  /** Bytes taken so far, before compression. */
-  std::uint64_t getTotalBytesCount() const override { return m_taken; }
-  std::uint64_t getPosition() const override { return m_taken; }
-
  private:
+  std::size_t write(const void* buffer, std::size_t count) override;
+  std::size_t read(void* buffer, std::size_t count) override;
   [[noreturn]] void fail() const;
 
   std::filesystem::path m_path;
-  gzFile_s* m_file = nullptr;
-  std::uint64_t m_taken = 0;
+  gzFile_s* m_file;
 };
 
 /** Writes a compressed rawlog, which appears under its name when it is complete. */
 class RawlogWriter {
  public:
   /** \throw std::runtime_error naming the file, if it cannot be written. */
-  explicit RawlogWriter(const std::filesystem::path& file);
-  ~RawlogWriter();
+  explicit RawlogWriter(const std::filesystem::path& file)
+      : m_file(file), m_archive(m_file.path()) {}
 
   /** Appends an observation, a sensory frame or an action collection.
    * \throw std::exception what of the object cannot be written, or that the disk is full. */
-  void write(const mrpt::serialization::CSerializable& object);
+  void write(const mrpt::serialization::CSerializable& object) { m_archive << object; }
 
   /** Completes the file; nothing can be written after it. Without it there will be no file.
    * \throw std::runtime_error naming the file, if it cannot be completed. */
@@ -103,7 +95,7 @@ class RawlogWriter {
 
  private:
   strict_files::StagedFile m_file;
-  std::unique_ptr<GzipOutputStream> m_stream;
+  GzipArchive m_archive;
 };
 
 /** A class table of what the labels in some rawlogs say of themselves, for those that come without
