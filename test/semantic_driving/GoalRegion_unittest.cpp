@@ -45,18 +45,13 @@ struct FloodedRegion {
   bool open = false, enclosed = true;
 
   FloodedRegion(const Walls& walls, const std::set<Place>& reached, const Place& goal) {
-    const auto inside = [](int x, int y) { return std::max(std::abs(x), std::abs(y)) <= kReach; };
-    std::set<Place> candidates;
     const auto take = [&](int x, int y) {
-      if (!inside(x, y)) {
-        open = true;
-        return;
-      }
-      if (walls.keep(x, y)) return;
-      if (reached.count({x, y}))
-        enclosed = false;
-      else
-        region.insert({x, y});
+      const int far = std::max(std::abs(x), std::abs(y));
+      if (far > kReach || (far < kReach && walls.keep(x, y))) return;
+      const bool isReached = reached.count({x, y}) > 0;
+      if (isReached) enclosed = false;
+      if (far == kReach) open = true;
+      if (!isReached || far == kReach) region.insert({x, y});
     };
     const auto seed = [&](bool kept) {
       for (int x = -kAroundGoal; x <= kAroundGoal; ++x)
@@ -65,14 +60,11 @@ struct FloodedRegion {
             take(goal.first + x, goal.second + y);
     };
     seed(walls.keep(goal.first, goal.second));
-    for (std::size_t before = 0; before != region.size() + open;) {
-      before = region.size() + open;
+    for (std::size_t before = 0; before != region.size();) {
+      before = region.size();
       for (const auto& [x, y] : std::set<Place>(region))
         for (int dx = -1; dx <= 1; ++dx)
           for (int dy = -1; dy <= 1; ++dy) take(x + dx, y + dy);
-      if (!open) continue;
-      for (int i = -kReach; i <= kReach; ++i)
-        for (const int rim : {-kReach, kReach}) take(i, rim), take(rim, i);
     }
   }
 };

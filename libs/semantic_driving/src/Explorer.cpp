@@ -16,123 +16,6 @@ namespace semantic_driving {
 using mrpt::math::TPose2D;
 using namespace semantic_planning;
 
-namespace {
-
-/** The least way from anywhere on to a goal, if only known obstacles are in the way (the freespace
- * assumption: Koenig and Likhachev, "D* Lite", 2002). A search from the goal: ground that is
- * reached counts as its rank, all else as the unknown. Ways are in buckets (Dial, "Algorithm 360",
- * 1969) instead of a heap. */
-class WayLeft {
- public:
-  /** \param asked for each column of the rectangle, whether from() may be asked there */
-  WayLeft(const Ground& ground, const GroundFlood& flood, const GoalRegion& region,
-          const TPose2D& goal, double unknownFactor, const std::vector<bool>& asked);
-
-  /** Weighted meters; infinite where something is in the way. */
-  double from(Column c) const { return m_ways[m_columns.indexOf(c)]; }
-
- private:
-  using Open = std::pair<double, std::size_t>;
-
-  void start(const TPose2D& goal);
-  void search(const std::vector<bool>& asked);
-  void expand(const Open& open);
-  void offer(Column c, double way);
-  void startOutside(const TPose2D& goal);
-  double costOf(Column c) const;
-
-  const Ground& m_ground;
-  const GroundFlood& m_flood;
-  const GoalRegion& m_region;
-  const ColumnRectangle& m_columns;
-  double m_unknown;    ///< what a meter through it counts
-  double m_width;      ///< of a bucket, weighted meters
-  double m_first = 0;  ///< no way is shorter, weighted meters
-  std::vector<double> m_ways;
-  /** By how often the width fits into what a way is longer than the first. */
-  std::vector<std::vector<Open>> m_open;
-};
-
-WayLeft::WayLeft(const Ground& ground, const GroundFlood& flood, const GoalRegion& region,
-                 const TPose2D& goal, double unknownFactor, const std::vector<bool>& asked)
-    : m_ground(ground),
-      m_flood(flood),
-      m_region(region),
-      m_columns(flood.columns()),
-      m_unknown(unknownFactor),
-      m_width(std::max(1.0, m_unknown) * m_ground.voxelSize()),
-      m_ways(m_columns.size(), std::numeric_limits<double>::infinity()) {
-  start(goal);
-  search(asked);
-}
-
-void WayLeft::start(const TPose2D& goal) {
-  const Column c = m_ground.columnAt(goal.x, goal.y);
-  if (!m_columns.contains(c)) return startOutside(goal);
-  const double voxel = m_ground.voxelSize();
-  const int reach = m_region.isKept(c) ? static_cast<int>(GoalRegion::kAroundGoal / voxel) : 0;
-  for (int y = -reach; y <= reach; ++y)
-    for (int x = -reach; x <= reach; ++x)
-      if (std::hypot(x, y) <= reach)
-        offer({c.x + x, c.y + y}, m_unknown * voxel * std::hypot(x, y));
-}
-
-/** What lies beyond the rectangle is unknown: by steps in eight directions to where the rim is seen
- * from the goal, and on along the rim. */
-void WayLeft::startOutside(const TPose2D& goal) {
-  constexpr double kFar = 1e6;  // m: farther columns have no number
-  const Column c =
-      m_ground.columnAt(std::clamp(goal.x, -kFar, kFar), std::clamp(goal.y, -kFar, kFar));
-  std::vector<std::pair<double, Column>> seen;
-  m_columns.forRim([&](Column rim) {
-    if (!m_columns.faces(rim, c)) return;
-    const auto [less, more] = std::minmax(
-        {std::abs(m_ground.centerOf(rim.x) - goal.x), std::abs(m_ground.centerOf(rim.y) - goal.y)});
-    seen.emplace_back(m_unknown * (more + (std::sqrt(2.0) - 1) * less), rim);
-  });
-  m_first = std::min_element(seen.begin(), seen.end())->first;
-  for (const auto& [way, rim] : seen) offer(rim, way);
-}
-
-void WayLeft::offer(Column c, double way) {
-  if (!m_columns.contains(c)) return;
-  const std::size_t i = m_columns.indexOf(c);
-  if (way >= m_ways[i]) return;
-  if (m_region.isKept(c) && !m_region.isReached(c) && !m_columns.isAtRim(c)) return;
-  m_ways[i] = way;
-  const auto bucket = static_cast<std::size_t>(std::max(0.0, way - m_first) / m_width);
-  if (bucket >= m_open.size()) m_open.resize(bucket + 1);
-  m_open[bucket].emplace_back(way, i);
-}
-
-/** What a meter costs. */
-double WayLeft::costOf(Column c) const {
-  return m_region.isReached(c) ? m_flood.at(c).rank + 1 : m_unknown;
-}
-
-/** What is offered meanwhile comes into the same bucket or a later one. Ends where all that is
- * asked for has its way. */
-void WayLeft::search(const std::vector<bool>& asked) {
-  auto left = std::count(asked.begin(), asked.end(), true);
-  for (std::size_t b = 0; left > 0 && b < m_open.size(); ++b) {
-    for (std::size_t k = 0; k < m_open[b].size(); ++k) expand(Open(m_open[b][k]));
-    Slices::count(m_open[b].size() / 4);
-    left -= std::count_if(m_open[b].begin(), m_open[b].end(), [&](const Open& open) {
-      return asked[open.second] && open.first == m_ways[open.second];
-    });
-  }
-}
-
-void WayLeft::expand(const Open& open) {
-  const auto [way, i] = open;
-  if (way > m_ways[i]) return;
-  const Column c = m_columns.columnOf(i);
-  const double meter = costOf(c) * m_ground.voxelSize();
-  for (const Column& d : kNeighbors) offer({c.x + d.x, c.y + d.y}, way + meter * lengthOf(d));
-}
-
-}  // namespace
-
 void Explorer::moveTo(const TPose2D& pose, double z) {
   const TPose2D before = std::exchange(m_pose, pose).value_or(pose);
   const auto ground = m_planner.ground().find(pose.x, pose.y, z);
@@ -236,19 +119,11 @@ class FrontierSearch {
     });
   }
 
-  /** For each column of the rectangle, whether it is the unknown that is seen. */
-  std::vector<bool> isSeen() const {
-    std::vector<bool> seen(m_flood.columns().size());
-    for (const View& view : m_views) seen[m_flood.columns().indexOf(view.unknown)] = true;
-    return seen;
-  }
-
   /** The best ones that the vehicle can stand at, apart from each other and from those to avoid.
    * \param unknown what a meter through it counts */
-  std::vector<Frontier> chosen(const WayLeft& wayLeft, double unknown,
-                               const std::vector<TPose2D>& avoid) const {
+  std::vector<Frontier> chosen(double unknown, const std::vector<TPose2D>& avoid) const {
     std::vector<Frontier> chosen;
-    for (const auto& [cost, straight, c] : best(wayLeft, unknown)) {
+    for (const auto& [cost, straight, c] : best(unknown)) {
       const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
       const auto isNear = [&](const TPose2D& p) {
         return std::hypot(p.x - x, p.y - y) < kFrontiersApart;
@@ -279,12 +154,12 @@ class FrontierSearch {
 
   /** The least cost first. Ways over columns are as long anywhere between two diagonals: of such
    * places that which leads straight on comes first. */
-  std::vector<Place> best(const WayLeft& wayLeft, double unknown) const {
+  std::vector<Place> best(double unknown) const {
     constexpr double kSameCost = 1e-3;  // m
     std::vector<Place> places;
     for (const View& view : m_views) {
       const double cost =
-          m_flood.at(view.from).cost + unknown * view.distance + wayLeft.from(view.unknown);
+          m_flood.at(view.from).cost + unknown * (view.distance + m_region.way(view.unknown));
       if (!std::isfinite(cost)) continue;
       if (places.empty() || !(places.back().column == view.from))
         places.push_back({cost, straightOver(view.from), view.from});
@@ -379,15 +254,11 @@ Exploration findFrontiers(const SemanticPlanner& planner, const TPose2D& from, d
   if (!region.isOpen()) found.goalArea = region.columns() * voxel * voxel;
   if (found.enclosed) return found;
   const FrontierSearch places(planner, flood, region, from, goal);
-  const auto search = [&](double unknown) {
-    const WayLeft wayLeft(planner.ground(), flood, region, goal, unknown, places.isSeen());
-    return places.chosen(wayLeft, unknown, avoid);
-  };
-  found.frontiers = search(kUnknownFactor);
+  found.frontiers = places.chosen(kUnknownFactor, avoid);
   if (found.frontiers.empty()) return found;
   found.hoped = found.frontiers.front().cost;
   const double doubt = effort.doubt(found.hoped);
-  if (doubt != 1) found.frontiers = search(kUnknownFactor * doubt);
+  if (doubt != 1) found.frontiers = places.chosen(kUnknownFactor * doubt, avoid);
   return found;
 }
 
