@@ -100,7 +100,7 @@ class SolutionWriter {
     m_compressor.weigh(solution, c.alpha);
     c.times.add("weigh");
     c.measures = m_compressor.abstraction().measures();
-    m_compressor.addKept(c.measures, c.kept);
+    c.kept = m_compressor.kept(c.measures);
     c.chosen = curvePoint(m_compressor, c.measures);
     c.times.add("measure");
     Compressed compressed(m_compressor);
@@ -131,19 +131,6 @@ class SolutionWriter {
   const OutputFolder& m_output;
   MapSheet& m_sheet;
 };
-
-/** The classes that did not fit into the first batch. */
-void measureOtherBatches(Compressor& compressor, std::vector<Compression>& compressions,
-                         Progress& progress) {
-  for (std::size_t b = 1; b < compressor.numBatches(); ++b) {
-    progress.update(compressions.size() + 2 * b, "other classes");
-    compressor.useBatch(b);
-    for (Compression& c : compressions) {
-      compressor.weigh(c.solution, c.alpha);
-      compressor.addKept(compressor.abstraction().measures(), c.kept);
-    }
-  }
-}
 
 /** Maps are worth keeping without figures: says what is wrong instead of throwing. */
 std::string drawFigures(const FullMap& map, const std::vector<Compression>& compressions,
@@ -189,8 +176,7 @@ int run(const Cli& cli) {
   CompressedPlace place;
   if (stored->folder()) place.tiles = {memory, stored->folder()->contents().tileSize};
   place.scratch = output.staged("tiles");
-  std::optional<Progress> progress(std::in_place, "Compressing",
-                                   solutions.size() + 2 * catalog.numBatches());
+  std::optional<Progress> progress(std::in_place, "Compressing", solutions.size() + 2);
   progress->update(0, "information of the classes");
   Compressor compressor(map, catalog, solutions.front(), place);
   times.add("computeInformation");
@@ -204,9 +190,7 @@ int run(const Cli& cli) {
         SolutionWriter(compressor, targetOf(cli), output, sheet).write(solution));
   }
   times.add("solutions");
-  measureOtherBatches(compressor, compressions, *progress);
   progress.reset();
-  times.add("measureOtherClasses");
 
   map_pictures::savePicture(sheet.picture(), output.staged("maps.png"));
   const std::string problem = drawFigures(full, compressions, catalog, output);

@@ -199,8 +199,8 @@ class MapFolder::Tiles {
     if (emptyLike(leaves) != emptyLike(m_map))
       throw std::runtime_error(m_folder.string() +
                                ": its map has another resolution, other classes or parameters");
-    MapAccess::setStore(m_map, std::make_unique<NodeStore>(MapAccess::store(leaves),
-                                                           MapAccess::store(m_map).stateBytes()));
+    MapAccess::setStore(m_map, MapAccess::store(leaves).copy(MapAccess::store(m_map).stateBytes(),
+                                                             NodeStore::Tiles::StayAway));
     tiles->addFromIndex();
     if (m_access != Access::Write) return;
     for (const std::string& name : tiles->index().files())
