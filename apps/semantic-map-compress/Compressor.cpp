@@ -28,34 +28,23 @@ namespace {
 Compressor::Compressor(SemanticOcTree& map, const TermCatalog& catalog, AbstractionOptions ofAll,
                        std::optional<semantic_octree::MapFolderOptions> tiles,
                        std::filesystem::path scratch)
-    : m_map(map),
-      m_catalog(catalog),
-      m_options(std::move(ofAll)),
-      m_tiles(std::move(tiles)),
-      m_scratch(std::move(scratch)) {
+    : m_map(map), m_catalog(catalog), m_tiles(std::move(tiles)), m_scratch(std::move(scratch)) {
   if (map.empty()) throw std::invalid_argument("the map is empty");
-  useBatch(0);
-}
-
-void Compressor::useBatch(std::size_t b) {
-  m_batch = b;
-  m_options.weights.alpha = tree_abstraction::kAlpha;  // until a solution is weighed
-  m_options.weights.terms = m_catalog.terms(b);
-  dropAbstraction(m_map);
-  setAbstraction(m_map, m_options);
+  ofAll.weights.alpha = tree_abstraction::kAlpha;  // until a solution is weighed
+  ofAll.weights.terms = catalog.terms({});
+  setAbstraction(m_map, ofAll);
 }
 
 void Compressor::weigh(const AbstractionOptions& solution, double alpha) {
-  abstraction().setWeights(m_catalog.weights(solution, m_batch), alpha);
+  abstraction().setWeights(m_catalog.weights(solution), alpha);
 }
 
-void Compressor::addKept(const AbstractionMeasures& measures,
-                         std::vector<KeptInformation>& kept) const {
-  kept.resize(m_catalog.size());
-  const auto& batch = m_catalog.batch(m_batch);
-  for (std::size_t i = 0; i < batch.size(); ++i)
-    kept[batch[i]] = {measures.full.information[i], measures.compressed.information[i],
-                      measures.retention(i)};
+std::vector<KeptInformation> Compressor::kept(const AbstractionMeasures& measures) const {
+  std::vector<KeptInformation> kept(m_catalog.size());
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    kept[m_catalog.order()[i]] = {measures.full.information[i], measures.compressed.information[i],
+                                  measures.retention(i)};
+  return kept;
 }
 
 double Compressor::alphaFor(const AbstractionOptions& solution, const Target& target) {

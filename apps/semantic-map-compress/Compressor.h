@@ -42,10 +42,6 @@ class Compressor {
              AbstractionOptions ofAll, std::optional<semantic_octree::MapFolderOptions> tiles,
              std::filesystem::path scratch);
 
-  std::size_t numBatches() const { return m_catalog.numBatches(); }
-  /** Computes the information of this batch's terms in all nodes. */
-  void useBatch(std::size_t b);
-
   /** The compressed tree is that of these weights from now on. */
   void weigh(const AbstractionOptions& solution, double alpha);
   /** Alpha of the largest compressed tree within the target. For bytes: the next larger one
@@ -56,10 +52,8 @@ class Compressor {
   semantic_octree::Abstraction abstraction() { return semantic_octree::Abstraction(m_map); }
   /** The present tree as a map. The one before must be gone. */
   std::unique_ptr<semantic_octree::StoredMap> compressed();
-  /** Adds what the measures say about the present batch's terms; one entry a term of the catalog.
-   */
-  void addKept(const semantic_octree::AbstractionMeasures& measures,
-               std::vector<KeptInformation>& kept) const;
+  /** What the measures say about each term of the catalog. */
+  std::vector<KeptInformation> kept(const semantic_octree::AbstractionMeasures& measures) const;
 
  private:
   double alphaForLeaves(const AbstractionOptions& solution, std::size_t wanted);
@@ -67,10 +61,8 @@ class Compressor {
 
   semantic_octree::SemanticOcTree& m_map;
   const TermCatalog& m_catalog;
-  AbstractionOptions m_options;
   std::optional<semantic_octree::MapFolderOptions> m_tiles;
   std::filesystem::path m_scratch;
-  std::size_t m_batch = 0;
 };
 
 /** One of a solution's compressed trees. */

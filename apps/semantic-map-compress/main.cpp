@@ -95,7 +95,7 @@ Compression writeSolution(const AbstractionOptions& solution, const Target& targ
   compressor.weigh(solution, c.alpha);
   c.times.add("weigh");
   c.measures = compressor.abstraction().measures();
-  compressor.addKept(c.measures, c.kept);
+  c.kept = compressor.kept(c.measures);
   c.chosen = curvePoint(compressor, c.measures);
   c.times.add("measure");
   const auto compressed = compressor.compressed();
@@ -115,19 +115,6 @@ Compression writeSolution(const AbstractionOptions& solution, const Target& targ
   c.curve = alphaCurve(compressor);
   c.times.add("curve");
   return c;
-}
-
-/** The classes that did not fit into the first batch. */
-void measureOtherBatches(Compressor& compressor, std::vector<Compression>& compressions,
-                         Progress& progress) {
-  for (std::size_t b = 1; b < compressor.numBatches(); ++b) {
-    progress.update(compressions.size() + 2 * b, "other classes");
-    compressor.useBatch(b);
-    for (Compression& c : compressions) {
-      compressor.weigh(c.solution, c.alpha);
-      compressor.addKept(compressor.abstraction().measures(), c.kept);
-    }
-  }
 }
 
 /** Maps are worth keeping without figures: says what is wrong instead of throwing. */
@@ -173,8 +160,7 @@ int run(const Cli& cli) {
   OutputFolder output(cli.output);
   std::optional<semantic_octree::MapFolderOptions> tiles;
   if (stored->folder()) tiles = {memory, stored->folder()->contents().tileSize};
-  std::optional<Progress> progress(std::in_place, "Compressing",
-                                   solutions.size() + 2 * catalog.numBatches());
+  std::optional<Progress> progress(std::in_place, "Compressing", solutions.size() + 2);
   progress->update(0, "information of the classes");
   Compressor compressor(map, catalog, solutions.front(), tiles, output.staged("tiles"));
   times.add("computeInformation");
@@ -187,9 +173,7 @@ int run(const Cli& cli) {
     compressions.push_back(writeSolution(solution, targetOf(cli), compressor, output, sheet));
   }
   times.add("solutions");
-  measureOtherBatches(compressor, compressions, *progress);
   progress.reset();
-  times.add("measureOtherClasses");
 
   map_pictures::savePicture(sheet.picture(), output.staged("maps.png"));
   const std::string problem = drawFigures(full, compressions, catalog, output);

@@ -112,7 +112,7 @@ TEST_F(SemanticMapCompress, csvHoldsALineForEachSolutionWithAValueForEachColumn)
               report["solutions"][1]["classes"]["wall, low"]["share"], 1e-6);
 }
 
-TEST_F(SemanticMapCompress, classesBeyondTheFirstBatchAreMeasuredAsIfAlone) {
+TEST_F(SemanticMapCompress, manyClassesAreMeasuredAsIfAlone) {
   constexpr int kMany = 60;
   saveTree(smallMap(numberedClasses(kMany), kMany), mapFile());
   const json report =

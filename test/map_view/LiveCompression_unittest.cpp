@@ -44,10 +44,10 @@ std::set<CubeId> leavesOf(const SemanticOcTree& map, const LiveCompression& live
 std::set<CubeId> leavesOfSolution(SemanticOcTree map, const AbstractionOptions& solution) {
   const semantic_octree::TermCatalog catalog(map.classes(), {solution});
   AbstractionOptions options = solution;
-  options.weights.terms = catalog.terms(0);
+  options.weights.terms = catalog.terms({});
   setAbstraction(map, options);
   Abstraction abstraction(map);
-  abstraction.setWeights(catalog.weights(solution, 0), solution.weights.alpha);
+  abstraction.setWeights(catalog.weights(solution), solution.weights.alpha);
   std::set<CubeId> leaves;
   for (const LeafCell& leaf : abstraction.leaves()) leaves.insert(cubeOf(leaf.lowest, leaf.depth));
   return leaves;
@@ -164,10 +164,10 @@ TEST(LiveCompression, RetainsWhatGValuesSay) {
   live.setLeaves(500);
   const semantic_octree::TermCatalog catalog(map.classes(), {LiveCompression::allClasses(map)});
   AbstractionOptions options;
-  options.weights.terms = catalog.terms(0);
+  options.weights.terms = catalog.terms({});
   setAbstraction(other, options);
   Abstraction abstraction(other);
-  abstraction.setWeights(catalog.weights(live.solution(), 0), live.alpha());
+  abstraction.setWeights(catalog.weights(live.solution()), live.alpha());
   const auto measures = abstraction.measures();
   const auto retained = live.retained();
   ASSERT_EQ(retained.size(), live.numTerms());

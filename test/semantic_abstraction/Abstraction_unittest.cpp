@@ -25,27 +25,19 @@ constexpr double kTreeResolution = 0.2;
 
 AbstractionOptions someOptions(double alpha) { return threeTerms(alpha, kTreeClasses, 0.05); }
 
-InsertionOptions someInsertion(int threads = 1) {
+InsertionOptions someInsertion() {
   InsertionOptions o;
   o.maxRange = 9;
-  o.threads = threads;
   return o;
 }
 
 SemanticOcTree mapOf(const std::vector<PosedCloud>& scans,
-                     const AbstractionOptions* options = nullptr, bool pruning = true,
-                     int threads = 1) {
+                     const AbstractionOptions* options = nullptr, bool pruning = true) {
   SemanticOcTree map(kTreeResolution, numberedClasses(kTreeClasses));
   map.setPruning(pruning);
   if (options) setAbstraction(map, *options);
-  for (const PosedCloud& s : scans) map.insert(s.cloud, s.T_map_sensor, someInsertion(threads));
+  for (const PosedCloud& s : scans) map.insert(s.cloud, s.T_map_sensor, someInsertion());
   return map;
-}
-
-TEST(Abstraction, threadsLeaveNoTrace) {
-  const auto options = someOptions(0.01);
-  const auto scans = scansOfSmallPlace(4, 4000, kTreeClasses, 3);
-  EXPECT_TRUE(mapOf(scans, &options, true, 1) == mapOf(scans, &options, true, 3));
 }
 
 TEST(Abstraction, agreesWithThePlainSearchOnTheSameTree) {
@@ -97,12 +89,10 @@ TEST(RowKernel, sortsTheValuesOfEachOctant) {
 }
 
 TEST(RowKernel, patternsInUseAreFoundAgainHoweverManyThereWere) {
-  PatternTable table(8);
+  RowTable<OctantPattern> table(8);
   const auto entryOf = [&](int i) {
     const OctantPattern pattern{{0, 0, 0, 0, 0, 0, 0, static_cast<Units>(i)}};
-    PatternTable::Entry& entry = table.find(pattern);
-    if (!entry.row) entry = {pattern, 1.0 * i, table.newRow()};
-    return entry;
+    return table.find(pattern, [&](const OctantPattern&, double*) { return 1.0 * i; });
   };
   for (int i = 0; i < 6000; i += 8) {
     table.release();

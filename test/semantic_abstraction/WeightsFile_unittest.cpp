@@ -162,6 +162,7 @@ TEST(TermCatalog, hasClassesFirstAndEachGroupOnce) {
   EXPECT_EQ(catalog.name(0), "free_space");
   EXPECT_EQ(catalog.name(3), "wall");
   EXPECT_EQ(catalog.name(4), "g");
-  EXPECT_EQ(catalog.allWeights(file[0]), (std::vector<double>{0, 0, 0, 2, 1}));
-  EXPECT_EQ(catalog.allWeights(file[1]), (std::vector<double>{0, 0, 0, 0, -3}));
+  EXPECT_EQ(catalog.order(), (std::vector<std::size_t>{3, 4, 0, 1, 2}));
+  EXPECT_EQ(catalog.weights(file[0]), (std::vector<double>{2, 1, 0, 0, 0}));
+  EXPECT_EQ(catalog.weights(file[1]), (std::vector<double>{0, -3, 0, 0, 0}));
 }

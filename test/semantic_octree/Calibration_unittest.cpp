@@ -4,28 +4,30 @@
 
 #include <cmath>
 
+#include "ExactFilter.h"
+
 using namespace semantic_octree;
 
 namespace {
 
 constexpr int kSevenClasses = 7;
 
-ClassFilter<double> filterOf(double power, double shared) {
+ClassFilter filterOf(double power, double shared) {
   FilterParameters parameters;
   parameters.calibration = {power, shared};
   return {kSevenClasses, parameters};
 }
 
 /** Two classes were seen. */
-ClassBelief<double> someBelief() {
-  const ClassFilter<double> filter(kSevenClasses, {});
-  ClassBelief<double> belief = filter.uniform(0);
+ClassBelief someBelief() {
+  const ClassFilter filter(kSevenClasses, {});
+  ClassBelief belief = filter.uniform(0);
   for (const ClassId id : {4, 2, 4}) filter.hit(belief, id);
   return belief;
 }
 
 /** p(class | occupied), [0] is free. */
-std::vector<double> classesOf(const ClassBelief<double>& belief) {
+std::vector<double> classesOf(const ClassBelief& belief) {
   std::vector<double> p(kSevenClasses + 1);
   belief.distribution(kSevenClasses, p.data());
   for (int k = 1; k <= kSevenClasses; ++k) p[k] /= 1 - p[0];
@@ -35,20 +37,20 @@ std::vector<double> classesOf(const ClassBelief<double>& belief) {
 }  // namespace
 
 TEST(Calibration, isAPowerAndWhatNamedClassesShare) {
-  const ClassBelief<double> belief = someBelief();
+  const ClassBelief belief = someBelief();
   const auto p = classesOf(belief);
   for (const double power : {1.0, 0.6, 0.2})
     for (const double shared : {0.0, 0.3}) {
-      const ClassBelief<double> stated = filterOf(power, shared).stated(belief);
+      const ClassBelief stated = filterOf(power, shared).stated(belief);
       double sum = 0;
       for (int k = 1; k <= kSevenClasses; ++k) sum += std::pow(p[k], power);
       const auto s = classesOf(stated);
       for (int k = 1; k <= kSevenClasses; ++k) {
         const double named = k == 2 || k == 4 ? shared / 2 : 0;
-        EXPECT_NEAR(s[k], (1 - shared) * std::pow(p[k], power) / sum + named, 1e-9) << k;
+        EXPECT_NEAR(s[k], (1 - shared) * std::pow(p[k], power) / sum + named, kTick) << k;
       }
       EXPECT_NEAR(stated.occupancyLogOdds(kSevenClasses), belief.occupancyLogOdds(kSevenClasses),
-                  1e-9);
+                  kTick);
       EXPECT_EQ(stated.ids, belief.ids);
     }
   EXPECT_TRUE(filterOf(1, 0).stated(belief) == belief);
@@ -56,27 +58,28 @@ TEST(Calibration, isAPowerAndWhatNamedClassesShare) {
 }
 
 TEST(Calibration, hasFactorsOfClasses) {
-  const ClassBelief<double> belief = someBelief();
+  const ClassBelief belief = someBelief();
   const auto p = classesOf(belief);
   FilterParameters parameters;
   parameters.calibration = {0.6, 0.3, {2, 0.25, 300, 0.5, 4, 0.01, 1}};
   const std::vector<double>& w = parameters.calibration.factors;
-  const ClassFilter<double> filter(kSevenClasses, parameters);
+  const ClassFilter filter(kSevenClasses, parameters);
   double sum = 0;
   for (int k = 1; k <= kSevenClasses; ++k) sum += w[k - 1] * std::pow(p[k], 0.6);
   std::vector<double> expected(kSevenClasses + 1), all(kSevenClasses + 1);
   for (int k = 1; k <= kSevenClasses; ++k)
     expected[k] = 0.7 * w[k - 1] * std::pow(p[k], 0.6) / sum + (k == 2 || k == 4 ? 0.15 : 0);
   filter.distribution(belief, all.data());
-  const ClassBelief<double> stated = filter.stated(belief);
+  const ClassBelief stated = filter.stated(belief);
   const auto s = classesOf(stated);
   EXPECT_EQ(stated.ids, (std::array<ClassId, 3>{3, 4, 2}));  // 3 is not named, but frequent
   const double others = (expected[1] + expected[5] + expected[6] + expected[7]) / 4;
   for (int k = 1; k <= kSevenClasses; ++k) {
-    EXPECT_NEAR(all[k] / (1 - all[0]), expected[k], 1e-9) << k;
-    EXPECT_NEAR(s[k], k >= 2 && k <= 4 ? expected[k] : others, 1e-9) << k;
+    EXPECT_NEAR(all[k] / (1 - all[0]), expected[k], kTick) << k;
+    EXPECT_NEAR(s[k], k >= 2 && k <= 4 ? expected[k] : others, kTick) << k;
   }
-  EXPECT_NEAR(stated.occupancyLogOdds(kSevenClasses), belief.occupancyLogOdds(kSevenClasses), 1e-9);
+  EXPECT_NEAR(stated.occupancyLogOdds(kSevenClasses), belief.occupancyLogOdds(kSevenClasses),
+              kTick);
   EXPECT_TRUE(filter.stated(filter.uniform(1)) == filter.uniform(1));
 }
 

@@ -65,8 +65,6 @@ SemanticOcTree reloaded(const SemanticOcTree& map) {
   return readTree(in);
 }
 
-constexpr double kTick = 1.0 / kUnitsPerLogOdds;
-
 /** Half-life of a leaf, by what the page on decay says. */
 double halfLifeOf(const SemanticOcTree& map, const SemanticOcTreeNode& leaf) {
   if (!map.isNodeOccupied(leaf)) return kHalfLives[0];

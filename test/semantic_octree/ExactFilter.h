@@ -8,20 +8,17 @@
 
 inline double logit(double p) { return std::log(p / (1 - p)); }
 inline double sigmoid(double h) { return 1 / (1 + std::exp(-h)); }
-/** The nearest multiple of 1/1024, as a map keeps log-odds. */
-inline double stored(double logOdds) { return std::nearbyint(logOdds * 1024) / 1024; }
+/** A map keeps log-odds as multiples of it. */
+constexpr double kTick = 1.0 / 1024;
+inline double stored(double logOdds) { return std::nearbyint(logOdds / kTick) * kTick; }
 
 /** Bayes filter over {free, class 1, ..., class K} that keeps every class's log-odds: the oracle of
  * the truncated filter, written from the formulas. */
 class ExactFilter {
  public:
-  /** What log-odds are made of may be any number, or rounded as in a map. */
-  enum class Grid { None, Stored };
-
-  ExactFilter(int K, const semantic_octree::FilterParameters& p, Grid grid = Grid::None)
-      : m_grid(grid), m_h(K, -rounded(std::log(K))) {
-    m_lowest = rounded(logit(p.minOccupancy)) - rounded(std::log(K));
-    m_highest = rounded(logit(p.maxProbability));
+  ExactFilter(int K, const semantic_octree::FilterParameters& p) : m_h(K, -stored(std::log(K))) {
+    m_lowest = stored(logit(p.minOccupancy)) - stored(std::log(K));
+    m_highest = stored(logit(p.maxProbability));
     m_floor = p.softLabelFloor;
     m_accuracy = p.accuracy;
     m_correlation = p.labelCorrelation;
@@ -33,14 +30,14 @@ class ExactFilter {
   }
 
   void hit(int id) {
-    for (int k = 1; k <= K(); ++k) m_h[k - 1] += rounded(k == id ? m_same : m_other);
+    for (int k = 1; k <= K(); ++k) m_h[k - 1] += stored(k == id ? m_same : m_other);
     limit();
   }
   void hit() { addToAll(m_unlabeled); }
   void miss() { addToAll(m_miss); }
   void hit(const std::vector<float>& q) {
     for (int k = 1; k <= K(); ++k)
-      m_h[k - 1] += rounded(m_unlabeled + std::log(K() * std::max<double>(q[k - 1], m_floor)));
+      m_h[k - 1] += stored(m_unlabeled + std::log(K() * std::max<double>(q[k - 1], m_floor)));
     limit();
   }
 
@@ -55,7 +52,7 @@ class ExactFilter {
     double sum = 0;
     for (const double l : logLikelihoods) sum += std::exp(l - most);
     for (int k = 1; k <= K(); ++k)
-      m_h[k - 1] += rounded(m_unlabeled + logLikelihoods[k - 1] - most + std::log(K() / sum));
+      m_h[k - 1] += stored(m_unlabeled + logLikelihoods[k - 1] - most + std::log(K() / sum));
     limit();
   }
 
@@ -98,9 +95,8 @@ class ExactFilter {
   }
 
  private:
-  double rounded(double x) const { return m_grid == Grid::Stored ? stored(x) : x; }
   void addToAll(double increment) {
-    for (double& h : m_h) h += rounded(increment);
+    for (double& h : m_h) h += stored(increment);
     limit();
   }
   void limit() {
@@ -108,7 +104,6 @@ class ExactFilter {
     for (double& h : m_h) h = std::max(m_lowest, h - std::max(0.0, excess));
   }
 
-  Grid m_grid;
   std::vector<double> m_h;
   double m_lowest, m_highest, m_floor, m_accuracy, m_correlation, m_same, m_other, m_unlabeled,
       m_miss;

@@ -33,9 +33,8 @@ inline std::vector<Observation> randomStream(std::mt19937& random, int length, i
   return stream;
 }
 
-template <typename Real>
-void apply(const semantic_octree::ClassFilter<Real>& filter, const Observation& z,
-           semantic_octree::ClassBelief<Real>& belief) {
+inline void apply(const semantic_octree::ClassFilter& filter, const Observation& z,
+                  semantic_octree::ClassBelief& belief) {
   if (z.kind == Observation::Kind::Hit) return filter.hit(belief, z.id);
   if (z.kind == Observation::Kind::UnlabeledHit) return filter.hit(belief);
   filter.miss(belief);
@@ -47,8 +46,7 @@ inline void apply(const Observation& z, ExactFilter& filter) {
   filter.miss();
 }
 
-template <typename Real>
-std::vector<double> distributionOf(const semantic_octree::ClassBelief<Real>& belief, int K) {
+inline std::vector<double> distributionOf(const semantic_octree::ClassBelief& belief, int K) {
   std::vector<double> p(K + 1);
   belief.distribution(K, p.data());
   return p;

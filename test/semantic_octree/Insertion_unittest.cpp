@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
+#include <semantic_abstraction/Abstraction.h>
 
 #include <algorithm>
 
+#include "BlockScans.h"
+#include "FollowedTree.h"
 #include "PlainMap.h"
 #include "RandomScans.h"
 #include "TemporaryFolder.h"
@@ -24,30 +27,105 @@ std::vector<PosedCloud> severalScans(unsigned seed, const RandomScanOptions& opt
   return scans;
 }
 
-/** Inserts into trees with and without pruning, by one thread and by three, and into the plain map.
- */
-void expectPlainResult(const std::vector<PosedCloud>& scans, const InsertionOptions& options,
-                       int classes) {
-  SemanticOcTree pruned(kInsertedResolution, numberedClasses(classes)), unpruned = pruned,
-                                                                        threaded = pruned;
-  unpruned.setPruning(false);
-  PlainMap plain(kInsertedResolution, classes);
-  InsertionOptions threads = options;
-  threads.threads = 3;
-  for (const PosedCloud& scan : scans) {
-    const PlainScan expected = plainScan(scan, kInsertedResolution, options);
-    for (SemanticOcTree* tree : {&pruned, &unpruned}) {
+bool isSameLeaf(const SemanticOcTree& tree, const SemanticOcTreeNode& a,
+                const SemanticOcTreeNode& b) {
+  return b && b.isLeaf() && a.getLogOdds() == b.getLogOdds() &&
+         a.hasClassRecord() == b.hasClassRecord() && tree.belief(a) == tree.belief(b);
+}
+
+/** Checks all inner nodes below one. \return number of nodes */
+std::size_t expectSoundBelow(const SemanticOcTree& tree, const SemanticOcTreeNode& node) {
+  if (node.isLeaf()) return 1;
+  std::size_t nodes = 1;
+  int same = 0;
+  float highest = -HUGE_VALF;
+  for (int i = 0; i < 8; ++i) {
+    const auto child = node.child(i);
+    if (!child) continue;
+    nodes += expectSoundBelow(tree, child);
+    highest = std::max(highest, child.getLogOdds());
+    same += node.child(0) && node.child(0).isLeaf() && isSameLeaf(tree, node.child(0), child);
+  }
+  EXPECT_EQ(node.getLogOdds(), highest);
+  EXPECT_FALSE(node.hasClassRecord());
+  if (tree.pruning()) {
+    EXPECT_LT(same, 8) << "children that agree";
+  }
+  return nodes;
+}
+
+void expectSound(const SemanticOcTree& tree) {
+  EXPECT_EQ(expectSoundBelow(tree, tree.root()), tree.size());
+  std::size_t leaves = 0;
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) ++leaves;
+  EXPECT_EQ(leaves, tree.getNumLeafNodes());
+}
+
+AbstractionOptions someTerms() {
+  AbstractionOptions options;
+  options.weights = {{tree_abstraction::relevant("1", 1, {1})}, 0.001};
+  return options;
+}
+
+/** Maps of each kind receive equal scans. */
+class Maps {
+ public:
+  Maps(double resolution, int classes, const FilterParameters& p = {})
+      : pruned(resolution, numberedClasses(classes), p), plain(resolution, classes, p) {
+    unpruned.setPruning(false);
+    for (SemanticOcTree* tree : {&shared, &abstracted}) setAbstraction(*tree, someTerms());
+  }
+  void insert(const PosedCloud& scan, InsertionOptions options = {}) {
+    const PlainScan expected = plainScan(scan, plain.resolution(), options);
+    for (SemanticOcTree* tree : {&pruned, &unpruned, &abstracted}) {
       const InsertionReport report = tree->insert(scan.cloud, scan.T_map_sensor, options);
       EXPECT_EQ(report.hitVoxels, expected.hits.size());
       EXPECT_EQ(report.freeVoxels, expected.free.size());
     }
-    threaded.insert(scan.cloud, scan.T_map_sensor, threads);
     plain.insert(scan, options);
+    options.threads = 3;
+    shared.insert(scan.cloud, scan.T_map_sensor, options);
+    m_compressed.follow();
   }
-  expectSame(pruned, plain);
-  expectSame(unpruned, plain);
-  EXPECT_TRUE(threaded == pruned);
-  EXPECT_LT(pruned.size(), unpruned.size());
+  void compare() const {
+    expectSame(pruned, plain);
+    expectSame(unpruned, plain);
+    expectSound(pruned);
+    expectSound(unpruned);
+    EXPECT_TRUE(shared == abstracted) << "by several threads";
+    EXPECT_EQ(shared.size(), pruned.size());
+    SemanticOcTree anew = pruned;
+    setAbstraction(anew, someTerms());
+    EXPECT_TRUE(abstracted == anew) << "bookkeeping that is kept up to date";
+  }
+
+  SemanticOcTree pruned, unpruned = pruned, shared = pruned, abstracted = pruned;
+  PlainMap plain;
+
+ private:
+  FollowedTree m_compressed{abstracted};
+};
+
+void expectPlainResult(unsigned seed, int classes, const FilterParameters& parameters,
+                       int numScans) {
+  Maps maps(1.0, classes, parameters);
+  BlockScans scans(seed, classes);
+  for (int i = 0; i < numScans; ++i) {
+    maps.insert(scans.next());
+    maps.compare();
+    if (testing::Test::HasFailure()) FAIL() << "seed " << seed << ", scan " << i;
+  }
+}
+
+TEST(BlockInsertion, givesThePlainMapWhateverHappensToABlock) {
+  for (unsigned seed = 1; seed <= 4; ++seed) expectPlainResult(seed, 3, {}, 40);
+}
+
+TEST(BlockInsertion, givesThePlainMapWithParametersAtTheirBounds) {
+  FilterParameters p;
+  p.hitProbability = p.maxProbability = 1 - 1e-9;
+  p.falseAlarmProbability = p.minOccupancy = 1e-9;
+  for (const int classes : {1, 24, 254}) expectPlainResult(20 + classes, classes, p, 15);
 }
 
 TEST(Insertion, ofAnyScansGivesThePlainMapToTheLastBit) {
@@ -77,7 +155,10 @@ TEST(Insertion, ofAnyScansGivesThePlainMapToTheLastBit) {
     options.carvingMargin = c.carvingMargin, options.rays = c.rays;
     RandomScanOptions scans;
     scans.classes = c.classes, scans.softLabels = c.softLabels;
-    expectPlainResult(severalScans(seed, scans), options, c.classes);
+    Maps maps(kInsertedResolution, c.classes);
+    for (const PosedCloud& scan : severalScans(seed, scans)) maps.insert(scan, options);
+    maps.compare();
+    EXPECT_LT(maps.pruned.size(), maps.unpruned.size());
   }
 }
 
@@ -171,30 +252,9 @@ TEST(BadInput, treesThatCannotBeAreRefused) {
       contains(errorOf([] { SemanticOcTree(0.1, ClassTable()); }), "number of classes is 0"));
 }
 
-// What single scans do that can be told by hand.
-
-constexpr double kScanResolution = 0.2;
-
 }  // namespace
 
-TEST(SingleScans, countsAVoxelOnceForEachScanForever) {
-  // A voxel seen again exactly n scans later for every n up to ten, and 300 scans in a row.
-  SemanticOcTree tree(kScanResolution, numberedClasses(2));
-  PlainMap plain(kScanResolution, 2);
-  PosedCloud here, elsewhere;
-  here.cloud.points = {{1.1f, 0.1f, 0.1f}, {1.12f, 0.1f, 0.1f}, {3.1f, 0.1f, 0.1f}};
-  elsewhere.cloud.points = {{-1.1f, 0.1f, 0.1f}};
-  const auto insert = [&](const PosedCloud& scan) {
-    tree.insert(scan.cloud, scan.T_map_sensor);
-    plain.insert(scan, {});
-    expectSame(tree, plain);
-  };
-  for (int pause = 0; pause < 10; ++pause) {
-    insert(here);
-    for (int i = 0; i < pause; ++i) insert(elsewhere);
-  }
-  for (int i = 0; i < 300; ++i) insert(i % 3 ? elsewhere : here);
-}
+// What single scans do that can be told by hand.
 
 TEST(SingleScans, ofBeamsAlongVoxelBordersStaysInTheBeamsNeighborhood) {
   std::mt19937 random(8);

@@ -98,7 +98,7 @@ TEST(LabelReliability, ofLabelsByChanceIsStillThatOfAFilter) {
     const LabelReliability reliability = never.explain(trusting(0.999, 0.5), K);
     EXPECT_GT(reliability.accuracy * K, 1);
     EXPECT_LT(reliability.accuracy, 1.0 / K + 0.13);
-    EXPECT_NO_THROW((ClassFilter<float>(K, {}).trusting(reliability)));
+    EXPECT_NO_THROW((ClassFilter(K, {}).trusting(reliability)));
   }
 }
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <map_correction/KeyframeMap.h>
 #include <semantic_abstraction/Abstraction.h>
-#include <semantic_octree/store/BlockUpdate.h>
+#include <semantic_octree/store/FusionRule.h>
 #include <semantic_octree/store/MapAccess.h>
 
 #include <algorithm>
@@ -123,47 +123,73 @@ TEST(NodeObserver, isTheOnlyOneOfItsMapAndComparedWithItsKindAlone) {
 // Another rule than the class filter, of which nothing else knows.
 
 constexpr int kClasses = 5;
-constexpr float kSure = 4;
-const float kLogClasses = onGrid(std::log(kClasses));
+constexpr Units kSure = 4 * kUnitsPerLogOdds;
 
 /** A voxel is what the last scan saw there: free, occupied, or the class that most labels name (of
  * several, the lowest id). */
-class LastSeen {
+class LastSeen final : public BlockFusion {
  public:
-  LastSeen trusting(const LabelReliability&) const { return *this; }
+  LastSeen(NodeStore& store, NodeArena& arena, bool pruning)
+      : m_store(store), m_arena(arena), m_pruning(pruning) {}
 
-  Belief uniform(float occupancy) const {
-    Belief b;
-    b.rest = occupancy - kLogClasses;
-    return b;
+  bool miss(Slot& leaf) override {
+    if (leaf.kind == Slot::Kind::LeafWithRecord) m_arena.dropRecord(leaf);
+    leaf.value = -kSure;
+    return true;
   }
-  float occupancyOf(const Belief& b) const { return onGrid(b.occupancyLogOdds(kClasses)); }
-  float occupancyOfUniform(float rest) const { return rest + kLogClasses; }
+  Units lowest() const override { return -kSure; }
+  Result update(Block& block, const BlockScan& scan) override {
+    BlockContent voxels = opened(m_store.contentOf(block));
+    voxels.recorded &= ~scan.touched();
+    std::uint32_t rank = scan.firstHit;
+    for (int v = 0; v < 64; ++v) {
+      if (scan.free >> v & 1) voxels.setVoxel(v, -kSure, nullptr);
+      if (scan.hit >> v & 1) see(scan.votes.votesOf(rank++), v, voxels);
+    }
+    for (int o = 0; m_pruning && o < 8; ++o) voxels.mergeOctant(o);
+    m_arena.fill(block, voxels);
+    return {true, true};
+  }
 
-  void miss(Belief& b) const { b = uniform(-kSure); }
-  void hit(Belief& b) const { b = uniform(kSure); }
-  void hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
+ private:
+  /** Octants that are leaves become voxels that say the same. */
+  static BlockContent opened(BlockContent block) {
+    for (int v = 0; v < 64; ++v) {
+      const int first = v & ~7;
+      if (!(block.leafOctants >> v / 8 & 1)) continue;
+      block.setVoxel(v, block.values[first],
+                     block.recorded >> first & 1 ? &block.records[first] : nullptr);
+    }
+    block.leafOctants = 0;
+    return block;
+  }
+  static void see(const HitVotes::Result& seen, int voxel, BlockContent& voxels) {
     const auto fewer = [](const ClassVotes& x, const ClassVotes& y) { return x.count < y.count; };
-    b = uniform(-kSure);
-    b.count = 1;
-    b.ids[0] = std::max_element(votes, votes + numVoted, fewer)->id;
-    b.logOdds[0] = kSure;
-  }
-  void hit(Belief& b, const float* q) const {
-    const ClassVotes most{static_cast<ClassId>(1 + (std::max_element(q, q + kClasses) - q)), 1};
-    hit(b, &most, 1);
+    if (seen.numVoted == 0) return voxels.setVoxel(voxel, kSure, nullptr);
+    ClassRecord record{};
+    record.rest = -kSure;
+    record.count = 1;
+    record.ids[0] =
+        std::max_element(seen.votes.begin(), seen.votes.begin() + seen.numVoted, fewer)->id;
+    record.logOdds[0] = kSure;
+    voxels.setVoxel(voxel, kSure, &record);
   }
 
-  float lowestOccupancy() const { return -kSure; }
-  float highestOccupancy() const { return kSure; }
-  float missIncrement() const { return -2 * kSure; }
-  float occupancyAfterMiss(float) const { return -kSure; }
-  float occupancyAfterUnlabeledHit(float) const { return kSure; }
+  NodeStore& m_store;
+  NodeArena& m_arena;
+  bool m_pruning;
+};
+
+struct LastSeenRule final : FusionRule {
+  std::unique_ptr<BlockFusion> begin(NodeStore& store, NodeArena& arena, bool pruning,
+                                     const LabelReliability&) const override {
+    return std::make_unique<LastSeen>(store, arena, pruning);
+  }
 };
 
 SemanticOcTree emptyMap() {
   SemanticOcTree map(0.4, numberedClasses(kClasses));
-  MapAccess::setRule(map, std::make_shared<FilterRule<LastSeen>>(LastSeen()));
+  MapAccess::setRule(map, std::make_shared<LastSeenRule>());
   return map;
 }
 

@@ -84,7 +84,7 @@ void PlainMap::insert(const PosedCloud& scan, const InsertionOptions& options) {
   const LabelReliability labels = reliabilityOf(plain, scan.cloud);
   FilterParameters ofScan = m_parameters;
   ofScan.accuracy = labels.accuracy, ofScan.labelCorrelation = labels.correlation;
-  const ClassFilter<float> filter(numClasses(), ofScan);
+  const ClassFilter filter(numClasses(), ofScan);
   for (const auto& [id, points] : plain.hits) {
     Voxel& v = voxel(id);
     scan.cloud.probabilities.empty() ? hit(v, points, scan.cloud, filter)
@@ -96,7 +96,7 @@ void PlainMap::insert(const PosedCloud& scan, const InsertionOptions& options) {
 PlainMap::Voxel& PlainMap::voxel(const VoxelId& id) { return m_voxels[id]; }
 
 void PlainMap::hit(Voxel& v, const std::vector<std::size_t>& points, const LabeledCloud& cloud,
-                   const ClassFilter<float>& filter) const {
+                   const ClassFilter& filter) const {
   std::map<int, int> votes;
   for (const std::size_t i : points)
     if (!cloud.classes.empty() && cloud.classes[i] != kNoClass) ++votes[cloud.classes[i]];

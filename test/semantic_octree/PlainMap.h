@@ -35,7 +35,7 @@ class PlainMap {
  public:
   struct Voxel {
     float value = 0;  ///< occupancy, log-odds
-    std::optional<semantic_octree::ClassBelief<float>> record;
+    std::optional<semantic_octree::ClassBelief> record;
   };
 
   PlainMap(double resolution, int K, const semantic_octree::FilterParameters& parameters = {})
@@ -53,7 +53,7 @@ class PlainMap {
   Voxel& voxel(const VoxelId& id);
   void hit(Voxel& v, const std::vector<std::size_t>& points,
            const semantic_types::LabeledCloud& cloud,
-           const semantic_octree::ClassFilter<float>& filter) const;
+           const semantic_octree::ClassFilter& filter) const;
   void hitSoft(Voxel& v, const std::vector<std::size_t>& points,
                const semantic_types::LabeledCloud& cloud) const;
   void hitUnlabeled(Voxel& v) const;
@@ -61,7 +61,7 @@ class PlainMap {
 
   double m_resolution;
   semantic_octree::FilterParameters m_parameters;
-  semantic_octree::ClassFilter<float> m_filter;
+  semantic_octree::ClassFilter m_filter;
   std::map<VoxelId, Voxel> m_voxels;
 };
 

@@ -73,8 +73,6 @@ TEST(AbstractionWeights, rejectsGroupsThatMakeNoVariable) {
   expectRejected({{{"road", 1, {{1, 1}}}}, 0}, {"'road'", "class 1", "more than one group"});
   expectRejected({{relevant("road", 1, {1}), relevant("road", 1, {2})}, 0},
                  {"'road'", "two terms"});
-  expectRejected({{irrelevant("street", 1, {2, 1}), relevant("road", 1, {1})}, 0},
-                 {"'street'", "class 1", "'road'"});
 }
 
 TEST(TermSet, otherTermsKeepEveryOutcomeTheRestLast) {

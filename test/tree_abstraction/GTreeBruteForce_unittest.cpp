@@ -115,17 +115,6 @@ TEST(GTreeSearch, gIsPositiveWhereGPerUnitOfProbabilityIs) {
   EXPECT_GT(zero, 100);
 }
 
-TEST(GTreeSearch, reportsNoRetentionOfInformationThatIsNotThere) {
-  Forest tree;
-  const auto root = tree.addInner(Forest::kNoParent);
-  tree.addLeaf(root, 1, {1, 0, 0});
-  tree.addLeaf(root, 1, {0, 1, 0});
-  const auto found =
-      findOptimalTree(tree, {{relevant("there", 1, {1}), relevant("absent", 1, {2})}, 0.1});
-  EXPECT_TRUE(found.retention(0).has_value());
-  EXPECT_FALSE(found.retention(1).has_value());
-}
-
 TEST(GTreeSearch, countsALeafAboveSomethingKnownAsKnown) {
   Forest tree;
   const auto root = tree.addInner(Forest::kNoParent);

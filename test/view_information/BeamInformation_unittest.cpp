@@ -265,7 +265,7 @@ TEST(BeamInformation, throughAFilterFarFromItsLimitsIsTheInformation) {
   const int K = 3;
   FilterParameters far;
   far.minOccupancy = 1e-7, far.maxProbability = 1 - 1e-7;
-  const ClassFilter<float> filter(K, far);
+  const ClassFilter filter(K, far);
   const BeamModel model(K, far);
   for (int trial = 0; trial < 100; ++trial) {
     const Question question(weightsOf({draw.term(K, 0.5 + draw.number())}), K);
@@ -286,7 +286,7 @@ TEST(BeamInformation, throughAFilterFarFromItsLimitsIsTheInformation) {
 TEST(BeamInformation, throughTheFilterEndsAtItsLimits) {
   const int K = 3;
   const FilterParameters parameters;
-  const ClassFilter<float> filter(K, parameters);
+  const ClassFilter filter(K, parameters);
   const BeamModel model(K, parameters);
   const Question question(weightsOf({tree_abstraction::wholeClassVariable("all", 1, K)}), K);
   const auto lowest = filter.uniform(filter.lowestOccupancy());
@@ -299,7 +299,7 @@ TEST(BeamInformation, throughTheFilterEndsAtItsLimits) {
 TEST(BeamInformation, ofWhatIsToBeIgnoredIsNoGainAtTheFiltersLimits) {
   const int K = 3;
   const FilterParameters parameters;
-  const ClassFilter<float> filter(K, parameters);
+  const ClassFilter filter(K, parameters);
   const BeamModel model(K, parameters);
   const Question question(weightsOf({tree_abstraction::irrelevant("b", 1, {1})}), K);
   for (const ClassId id : {1, 2}) {

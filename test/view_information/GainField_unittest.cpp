@@ -55,7 +55,7 @@ TEST(GainField, hasOfEachVoxelWhatTheFilterMakesOfALook) {
   Scene s;
   insertFloor(s.map, kRoad);
   s.field.update();
-  const semantic_octree::ClassFilter<float> filter(3, s.map.filterParameters());
+  const semantic_octree::ClassFilter filter(3, s.map.filterParameters());
   std::size_t voxels = 0;
   for (auto leaf = s.map.begin_leafs(); leaf != s.map.end_leafs(); ++leaf) {
     const auto gain = s.field.at(leaf.getKey());

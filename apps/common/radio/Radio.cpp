@@ -159,7 +159,7 @@ semantic_octree::AbstractionOptions Wish::forClasses(const semantic_types::Class
   auto options = semantic_octree::solutionIn(
       semantic_octree::weightsOfText(weights, name, classes, 0), solution, name);
   // The terms of semantic-map-compress, in its order: rounding decides no tie otherwise.
-  options.weights.terms = semantic_octree::TermCatalog(classes, {options}).weighedTerms(options, 0);
+  options.weights.terms = semantic_octree::TermCatalog(classes, {options}).terms(options);
   if (alpha) options.weights.alpha = *alpha;
   return options;
 }

@@ -3,7 +3,6 @@
 #include <semantic_octree/store/MapAccess.h>
 #include <semantic_octree/store/NodeEditor.h>
 #include <semantic_octree/store/TileCodes.h>
-#include <semantic_octree/store/TreeComparison.h>
 
 #include <algorithm>
 #include <deque>
@@ -22,10 +21,7 @@ namespace {
 class TileReplacement {
  public:
   TileReplacement(const MergeTarget& target, const NodeStore& source)
-      : m_nodes(target, 0),
-        m_store(target.store),
-        m_source(source),
-        m_comparison(target.store, source, nullptr) {}
+      : m_nodes(target, 0), m_store(target.store), m_source(source) {}
 
   void replace(const TileCodes& tiles) {
     replace(m_store.root(), Cube(), {tiles.begin(), tiles.end()}, m_source.root());
@@ -33,6 +29,10 @@ class TileReplacement {
   }
 
  private:
+  bool isSame(const Slot& slot, const Slot& source) const {
+    return areSame(m_store, slot, m_source, source, nullptr);
+  }
+
   /** \param tiles those below the node \param source the other tree's node there; a leaf stands for
    * all that is below \return whether anything changed */
   bool replace(Slot& slot, const Cube& cell, const TileRange& tiles, const Slot& source) {
@@ -45,7 +45,7 @@ class TileReplacement {
   }
 
   bool replaceBelow(Slot& slot, const Cube& cell, const TileRange& tiles, const Slot& source) {
-    if (!slot.isInner() && !source.isInner() && m_comparison.same(slot, source)) return false;
+    if (!slot.isInner() && !source.isInner() && isSame(slot, source)) return false;
     Octant& octant = slot.isInner()   ? m_store.octant(slot)
                      : slot.isKnown() ? m_nodes.arena.expandToOctant(slot)
                                       : m_nodes.arena.createOctant(slot);
@@ -72,7 +72,7 @@ class TileReplacement {
   /** A tile, or a node below. What is alike stays where it is. What is replaced knows nothing of
    * what was told of the node before: it counts as reshaped. */
   bool replaceAll(Slot& slot, const Cube& cell, const Slot& source) {
-    if (m_comparison.same(slot, source)) return false;
+    if (isSame(slot, source)) return false;
     if (slot.kind != Slot::Kind::Octant || source.kind != Slot::Kind::Octant) {
       if (slot.isKnown()) m_nodes.arena.remove(slot);
       copy(slot, cell, source);
@@ -104,7 +104,6 @@ class TileReplacement {
   NodeEditor m_nodes;
   NodeStore& m_store;
   const NodeStore& m_source;
-  TreeComparison m_comparison;
 };
 
 }  // namespace
@@ -153,7 +152,7 @@ struct KeyframeMap::Content {
       buffers = nullptr;
       throw;
     }
-    if (buffers->bytes() > Scan::kTooManyBytes)
+    if (buffers->isLarge())
       buffers = nullptr;
     else if (buffers->hasVoxels())
       buffers->clear();

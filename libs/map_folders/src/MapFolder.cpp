@@ -168,8 +168,8 @@ void MapFolder::Tiles::takeContents() {
   if (emptyLike(leaves) != emptyLike(m_map))
     throw std::runtime_error(m_folder.string() +
                              ": its map has another resolution, other classes or parameters");
-  MapAccess::setStore(m_map,
-                      std::make_unique<NodeStore>(MapAccess::store(leaves), store().stateBytes()));
+  MapAccess::setStore(m_map, MapAccess::store(leaves).copy(store().stateBytes(),
+                                                           NodeStore::Tiles::StayAway));
   addFromIndex();
   if (m_access != Access::Write) return;
   for (const std::string& name : m_index.files())

@@ -10,7 +10,7 @@ namespace {
 
 struct Sum {
   const std::vector<const SemanticOcTree*>& maps;
-  ClassFilter<float> filter;
+  ClassFilter filter;
   Limits limits;
 
   int numClasses() const { return filter.numClasses(); }

@@ -61,7 +61,7 @@ class OctomapCursor {
  public:
   using NodeOfTree = typename Tree::NodeType;
 
-  OctomapCursor(const Tree& map, const ClassTable& classes, const ClassFilter<float>& filter,
+  OctomapCursor(const Tree& map, const ClassTable& classes, const ClassFilter& filter,
                 const NodeOfTree* node)
       : m_map(map), m_classes(classes), m_filter(filter), m_node(node) {}
 
@@ -90,7 +90,7 @@ class OctomapCursor {
  private:
   const Tree& m_map;
   const ClassTable& m_classes;
-  const ClassFilter<float>& m_filter;
+  const ClassFilter& m_filter;
   const NodeOfTree* m_node;
 };
 
@@ -101,7 +101,7 @@ SemanticOcTree imported(const Tree& map, const ClassTable& classes,
     throw std::invalid_argument("importing an octree: " + std::to_string(map.getTreeDepth()) +
                                 " levels, expected 16");
   SemanticOcTree result(map.getResolution(), classes, filter);
-  const ClassFilter<float> limits(classes.size(), filter);
+  const ClassFilter limits(classes.size(), filter);
   TreeBuilder::fill(result, OctomapCursor<Tree>(map, classes, limits, map.getRoot()));
   return result;
 }

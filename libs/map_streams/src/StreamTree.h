@@ -61,9 +61,7 @@ class StreamTree {
  public:
   StreamTree() = default;
   StreamTree(const StreamTree& o)
-      : m_store(std::make_unique<NodeStore>(*o.m_store, 0)),
-        m_revision(o.m_revision),
-        m_newInner(o.m_newInner) {}
+      : m_store(o.m_store->copy(0)), m_revision(o.m_revision), m_newInner(o.m_newInner) {}
   StreamTree(StreamTree&&) = default;
   StreamTree& operator=(StreamTree&&) = default;
 

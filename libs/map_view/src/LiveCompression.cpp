@@ -43,7 +43,7 @@ AbstractionOptions withAllTerms(SemanticOcTree& map, const AbstractionOptions& s
     if (std::none_of(all.weights.terms.begin(), all.weights.terms.end(), same))
       all.weights.terms.push_back({term.name, 0, term.groups});
   }
-  all.weights.terms = TermCatalog(map.classes(), {all}).weighedTerms(all, 0);
+  all.weights.terms = TermCatalog(map.classes(), {all}).terms(all);
   setAbstraction(map, all);
   return all;
 }

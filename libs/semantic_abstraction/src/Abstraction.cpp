@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "CompressedTree.h"
-#include "LeafLog.h"
 
 namespace semantic_octree {
 namespace {
@@ -244,17 +243,6 @@ void Abstraction::compressTo(SemanticOcTree& compressed) const {
       m_map, [&tree](const Node& node) { return tree.isExpanded(node); }, compressed);
 }
 
-std::shared_ptr<LeafLog> Abstraction::leafLog() const {
-  const auto log = readLog(m_gTree.leafLog);
-  try {
-    log->update(MapAccess::store(m_map), m_gTree, m_map.root());
-  } catch (...) {
-    m_gTree.leafLog.reset();
-    throw;
-  }
-  return log;
-}
-
 void Abstraction::setAlpha(double alpha) {
   std::vector<double> weights;
   for (const auto& term : options().weights.terms) weights.push_back(term.weight);
@@ -262,14 +250,15 @@ void Abstraction::setAlpha(double alpha) {
 }
 
 void Abstraction::setWeights(const std::vector<double>& termWeights, double alpha) {
-  tree_abstraction::AbstractionWeights weights = options().weights;
-  if (termWeights.size() != weights.terms.size())
+  AbstractionOptions changed = options();
+  auto& terms = changed.weights.terms;
+  if (termWeights.size() != terms.size())
     throw std::invalid_argument("abstraction: " + std::to_string(termWeights.size()) +
                                 " weights, expected one for each of the " +
-                                std::to_string(weights.terms.size()) + " terms");
-  for (std::size_t t = 0; t < termWeights.size(); ++t) weights.terms[t].weight = termWeights[t];
-  weights.alpha = alpha;
-  weights.validate(m_map.numClasses());
+                                std::to_string(terms.size()) + " terms");
+  for (std::size_t t = 0; t < terms.size(); ++t) terms[t].weight = termWeights[t];
+  changed.weights.alpha = alpha;
+  changed.forClasses(m_map.classes());  // refuses what cannot be
   GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setWeights(termWeights, alpha);
   recomputeAll(worker, MapAccess::store(m_map), MapAccess::store(m_map).root(), Cube());
@@ -281,7 +270,7 @@ void Abstraction::setRegions(const std::vector<Region>& regions) {
   GTree::Worker& worker = m_gTree.worker(0);
   m_gTree.setRegions(regions);
   worker.recomputeWhereChanged(MapAccess::store(m_map), MapAccess::store(m_map).root(), Cube(),
-                               {before, m_gTree.density()});
+                               before);
 }
 
 SemanticOcTree compressedMap(const SemanticOcTree& map, const IsExpanded& isExpanded) {

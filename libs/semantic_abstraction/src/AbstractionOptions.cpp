@@ -81,13 +81,6 @@ const Choices<AbstractionOptions::Unknown>& choicesOf(AbstractionOptions::Unknow
 
 using tree_abstraction::InformationTerm;
 
-namespace {
-
-/** Terms beyond the weighed ones in a batch; up to 24 classes and free space need but one. */
-constexpr std::size_t kMeasuredAtOnce = 25;
-
-}  // namespace
-
 TermCatalog::TermCatalog(const semantic_types::ClassTable& classes,
                          const std::vector<AbstractionOptions>& solutions)
     : m_numClasses(static_cast<std::size_t>(classes.size())) {
@@ -100,7 +93,9 @@ TermCatalog::TermCatalog(const semantic_types::ClassTable& classes,
   std::vector<bool> isWeighed(size(), false);
   for (const AbstractionOptions& solution : solutions)
     for (const InformationTerm& term : solution.weights.terms) isWeighed[indexOf(term)] = true;
-  makeBatches(isWeighed);
+  for (std::size_t t = 0; t < size(); ++t) m_order.push_back(t);
+  std::stable_partition(m_order.begin(), m_order.end(),
+                        [&](std::size_t t) { return isWeighed[t]; });
 }
 
 std::size_t TermCatalog::indexOf(const InformationTerm& term) const {
@@ -119,41 +114,20 @@ void TermCatalog::add(InformationTerm term) {
   m_terms.push_back(std::move(term));
 }
 
-void TermCatalog::makeBatches(const std::vector<bool>& isWeighed) {
-  std::vector<std::size_t> weighed, measured;
-  for (std::size_t t = 0; t < size(); ++t) (isWeighed[t] ? weighed : measured).push_back(t);
-  std::size_t next = 0;
-  do {
-    const std::size_t end = std::min(next + kMeasuredAtOnce, measured.size());
-    m_batches.push_back(weighed);
-    for (; next < end; ++next) m_batches.back().push_back(measured[next]);
-  } while (next < measured.size());
-}
-
-std::vector<InformationTerm> TermCatalog::terms(std::size_t b) const {
+std::vector<InformationTerm> TermCatalog::terms(const AbstractionOptions& solution) const {
+  const std::vector<double> weights = this->weights(solution);
   std::vector<InformationTerm> terms;
-  for (const std::size_t t : m_batches[b]) terms.push_back(m_terms[t]);
+  for (std::size_t i = 0; i < size(); ++i) {
+    terms.push_back(m_terms[m_order[i]]);
+    terms.back().weight = weights[i];
+  }
   return terms;
 }
 
-std::vector<InformationTerm> TermCatalog::weighedTerms(const AbstractionOptions& solution,
-                                                       std::size_t b) const {
-  std::vector<InformationTerm> weighed = terms(b);
-  const std::vector<double> weights = this->weights(solution, b);
-  for (std::size_t t = 0; t < weighed.size(); ++t) weighed[t].weight = weights[t];
-  return weighed;
-}
-
-std::vector<double> TermCatalog::allWeights(const AbstractionOptions& solution) const {
-  std::vector<double> weights(size(), 0.0);
-  for (const InformationTerm& term : solution.weights.terms) weights[indexOf(term)] += term.weight;
-  return weights;
-}
-
-std::vector<double> TermCatalog::weights(const AbstractionOptions& solution, std::size_t b) const {
-  const std::vector<double> all = allWeights(solution);
-  std::vector<double> weights;
-  for (const std::size_t t : m_batches[b]) weights.push_back(all[t]);
+std::vector<double> TermCatalog::weights(const AbstractionOptions& solution) const {
+  std::vector<double> all(size(), 0.0), weights;
+  for (const InformationTerm& term : solution.weights.terms) all[indexOf(term)] += term.weight;
+  for (const std::size_t t : m_order) weights.push_back(all[t]);
   return weights;
 }
 

@@ -18,11 +18,6 @@ double distanceToStretch(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
   return (p - a - t * ab).norm();
 }
 
-bool areSame(const Region& r, const Region& s) {
-  return r.shape == s.shape && r.a == s.a && r.b == s.b && r.radius == s.radius &&
-         r.weight == s.weight;
-}
-
 }  // namespace
 
 DensityField::DensityField(std::vector<Region> regions, double resolution)
@@ -66,27 +61,6 @@ double DensityField::meanInRegions(const Cube& cell) const {
   return (((d[0] + d[1]) + (d[2] + d[3])) + ((d[4] + d[5]) + (d[6] + d[7]))) * 0.125;
 }
 
-DensityChange::DensityChange(const DensityField& before, const DensityField& now)
-    : m_before(before), m_now(now), m_moved({}, now.m_resolution) {
-  const auto addMissing = [this](const DensityField& from, const DensityField& in) {
-    for (const Region& region : from.m_regions)
-      if (std::none_of(in.m_regions.begin(), in.m_regions.end(),
-                       [&](const Region& r) { return areSame(r, region); }))
-        m_moved.m_regions.push_back(region);
-  };
-  addMissing(before, now);
-  addMissing(now, before);
-}
-
-bool DensityChange::noneIn(const Cube& cell) const {
-  const auto isOff = [&](const Region& region) {
-    return m_moved.overlap(region, cell) == DensityField::Overlap::None;
-  };
-  if (std::all_of(m_moved.m_regions.begin(), m_moved.m_regions.end(), isOff)) return true;
-  const auto before = m_before.constantIn(cell);
-  return before && before == m_now.constantIn(cell);
-}
-
 namespace {
 
 constexpr double kLogEight = 3 * tree_abstraction::kLn2;
@@ -128,7 +102,7 @@ double entropyOfShares(const double* shares) {
 
 }  // namespace
 
-GTree::GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution)
+GTree::GTree(const AbstractionOptions& options, const ClassFilter& filter, double resolution)
     : m_options(options),
       m_layout(options, filter.numClasses()),
       m_filter(filter),
@@ -182,24 +156,38 @@ GTree::Worker& GTree::worker(int i) {
 
 GTree::Worker::Worker(const GTree& gTree)
     : m_gTree(gTree),
-      m_valueRows(gTree.layout().rowSize()),
-      m_recordRows(gTree.layout().rowSize()),
+      m_values(gTree.layout().rowSize()),
+      m_records(gTree.layout().rowSize()),
       m_patterns(gTree.layout().rowSize()),
       m_buffers((kOwn + 1) * gTree.layout().rowSize()),
       m_divergences(gTree.layout().sizes().terms) {}
 
 const double* GTree::Worker::rowOf(const ClassRecord& record) {
-  return m_recordRows.row(
-      record, [&](const ClassRecord& r, double* row) { m_gTree.layout().rowOf(r.belief(), row); });
+  return m_records
+      .find(record,
+            [&](const ClassRecord& r, double* row) {
+              m_gTree.layout().rowOf(r.belief(), row);
+              return 0.0;
+            })
+      .row;
 }
 
 const double* GTree::Worker::rowOf(Units value) {
-  return m_valueRows.row(value, [&](Units v, double* row) {
-    if (v == kUnknown)
-      std::copy_n(m_gTree.layout().unknownRow(), m_gTree.layout().rowSize(), row);
-    else
-      m_gTree.layout().rowOf(m_gTree.m_filter.uniform(fromUnits(v)), row);
-  });
+  return m_values
+      .find(value,
+            [&](Units v, double* row) {
+              if (v == kUnknown)
+                std::copy_n(m_gTree.layout().unknownRow(), m_gTree.layout().rowSize(), row);
+              else
+                m_gTree.layout().rowOf(m_gTree.m_filter.uniform(fromUnits(v)), row);
+              return 0.0;
+            })
+      .row;
+}
+
+void GTree::Worker::releaseRows() {
+  m_values.release();
+  m_records.release();
 }
 
 NodeSummary GTree::Worker::compute(const Children& children, const EqualDensity& equalDensity,
@@ -239,7 +227,7 @@ NodeSummary GTree::Worker::computeOctant(const NodeStore& store, const Slot& inn
   for (int i = 0; i < 8; ++i)
     if (octant.slots[i].kind == Slot::Kind::Block)
       addBlock(store, octant.slots[i], cell.child(i), i, c);
-  m_recordRows.release();
+  releaseRows();
   for (int i = 0; i < 8; ++i) {
     const Slot& child = octant.slots[i];
     if (child.kind == Slot::Kind::Block) continue;
@@ -250,9 +238,9 @@ NodeSummary GTree::Worker::computeOctant(const NodeStore& store, const Slot& inn
       c.densities[i] = s.density;
       continue;
     }
-    c.rows[i] = child.kind == Slot::Kind::LeafWithRecord ? rowOf(store.record(child))
-                : child.isKnown()                        ? rowOf(child.value)
-                                                         : m_gTree.layout().unknownRow();
+    c.rows[i] = child.kind == Slot::Kind::LeafWithRecord
+                    ? rowOf(store.record(child))
+                    : rowOf(child.isKnown() ? child.value : kUnknown);
     if (!equalDensity) c.densities[i] = m_gTree.densityOf(child.isKnown(), cell.child(i));
   }
   return compute(c, equalDensity, cell.depth, row);
@@ -260,6 +248,7 @@ NodeSummary GTree::Worker::computeOctant(const NodeStore& store, const Slot& inn
 
 NodeSummary GTree::Worker::computePattern(const OctantPattern& pattern, double density,
                                           double* row) {
+  releaseRows();
   Children c;
   for (int i = 0; i < 8; ++i) c.rows[i] = rowOf(pattern.values[i]);
   return compute(c, density, Block::kDepth + 1, row);
@@ -278,19 +267,13 @@ NodeSummary GTree::Worker::computeOctantOfBlock(const Block& block, int octant,
     std::sort(pattern.values, pattern.values + 8);
     return computePattern(pattern, *density, row);
   }
-  m_recordRows.release();
+  releaseRows();
   Children c;
   for (int i = 0; i < 8; ++i) c.rows[i] = recorded >> i & 1 ? rowOf(*records++) : rowOf(values[i]);
   if (!density)
     for (int i = 0; i < 8; ++i)
       c.densities[i] = m_gTree.densityOf(values[i] != kUnknown, cell.child(i));
   return compute(c, density, cell.depth, row);
-}
-
-void GTree::Worker::addPattern(PatternTable::Entry& entry, const OctantPattern& pattern,
-                               double density) {
-  double* const row = m_patterns.newRow();
-  entry = {pattern, computePattern(pattern, density, row).gValue, row};
 }
 
 void GTree::Worker::addOctant(const Block& block, int octant, const ClassRecord* records,
@@ -305,13 +288,11 @@ void GTree::Worker::addOctant(const Block& block, int octant, const ClassRecord*
     m_expandedOctants |= static_cast<unsigned>(n.isExpanded) << octant;
     return;
   }
-  if (octantOf(block.recorded, octant)) {
-    m_recordRows.release();  // so that the next octant's rows may take its place
-    std::copy_n(rowOf(*records), m_gTree.layout().rowSize(), buffer(octant));
-    c.rows[octant] = buffer(octant);
-  } else {
-    c.rows[octant] = rowOf(block.values[8 * octant]);
-  }
+  releaseRows();  // so that the next octant's rows may take its place
+  const double* const row =
+      octantOf(block.recorded, octant) ? rowOf(*records) : rowOf(block.values[8 * octant]);
+  std::copy_n(row, m_gTree.layout().rowSize(), buffer(octant));
+  c.rows[octant] = buffer(octant);
   if (!blocksDensity) c.densities[octant] = m_gTree.densityOf(isKnown, cell);
 }
 
@@ -330,8 +311,9 @@ NodeSummary GTree::Worker::computeBlock(const NodeStore& store, const Slot& inne
   for (int o = 0; o < 8; ++o) {
     const std::uint8_t recorded = octantOf(block.recorded, o);
     if (recorded == 0 && hasPatterns) {
-      PatternTable::Entry& entry = m_patterns.find(patterns[o]);
-      if (!entry.row) addPattern(entry, patterns[o], *density);
+      const auto& entry = m_patterns.find(patterns[o], [&](const OctantPattern& p, double* ofIt) {
+        return computePattern(p, *density, ofIt).gValue;
+      });
       c.rows[o] = entry.row;
       c.gValues[o] = entry.gValue;
       expanded |= static_cast<unsigned>(entry.gValue > m_gTree.m_eps) << o;
@@ -385,14 +367,15 @@ void GTree::Worker::noteChildren(const NodeStore& store, const Slot& inner, Inne
 }
 
 bool GTree::Worker::recomputeWhereChanged(NodeStore& store, Slot& slot, const Cube& cell,
-                                          const DensityChange& change) {
-  if (change.noneIn(cell)) return false;
+                                          const DensityField& before) {
+  const auto density = before.constantIn(cell);
+  if (density && density == m_gTree.density().constantIn(cell)) return false;
   if (slot.isKnown() && !slot.isInner()) return true;
   store.bring(slot);
   bool changed = slot.kind != Slot::Kind::Octant;
   if (slot.kind == Slot::Kind::Octant)
     for (int i = 0; i < 8; ++i)
-      changed |= recomputeWhereChanged(store, store.octant(slot).slots[i], cell.child(i), change);
+      changed |= recomputeWhereChanged(store, store.octant(slot).slots[i], cell.child(i), before);
   if (changed && slot.isInner()) recompute(store, slot, cell, false);
   return changed;
 }

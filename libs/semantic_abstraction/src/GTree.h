@@ -26,7 +26,6 @@ class DensityField {
   }
 
  private:
-  friend class DensityChange;
   enum class Overlap { None, Part, Full };
   Overlap overlap(const Region& region, const Cube& cell) const;
   std::optional<double> constantInRegions(const Cube& cell) const;
@@ -34,22 +33,6 @@ class DensityField {
 
   std::vector<Region> m_regions;
   double m_resolution = 1;
-};
-
-/** What becomes of the density when regions move. */
-class DensityChange {
- public:
-  /** Compares fields of maps of one resolution, which must outlive this. */
-  DensityChange(const DensityField& before, const DensityField& now);
-
-  /** Whether there is none anywhere in a cell, as far as can be told without going to its voxels:
-   * true is certain. */
-  bool noneIn(const Cube& cell) const;
-
- private:
-  const DensityField& m_before;
-  const DensityField& m_now;
-  DensityField m_moved;  ///< the regions that only one of them has
 };
 
 class LeafLog;
@@ -99,7 +82,7 @@ struct InnerNode : NodeSummary {
  * children. None is adjusted, so the order of updates leaves no trace. */
 class GTree final : public NodeObserver {
  public:
-  GTree(const AbstractionOptions& options, const ClassFilter<float>& filter, double resolution);
+  GTree(const AbstractionOptions& options, const ClassFilter& filter, double resolution);
 
   const AbstractionOptions& options() const { return m_options; }
   const RowLayout& layout() const { return m_layout; }
@@ -143,9 +126,9 @@ class GTree final : public NodeObserver {
     /** Before the weights change. */
     void forgetGValues() { m_patterns.clear(); }
     void recompute(NodeStore& store, Slot& inner, const Cube& cell, bool reshaped) override;
-    /** Nodes in whose cell the density is not what it was. \return whether there were any */
+    /** Nodes in whose cell the density may not be what it was. \return whether there were any */
     bool recomputeWhereChanged(NodeStore& store, Slot& slot, const Cube& cell,
-                               const DensityChange& change);
+                               const DensityField& before);
     /** Calls f(node) for an inner node that is a slot, then for its octants that are inner nodes if
      * it is a block. */
     template <typename F>
@@ -179,7 +162,6 @@ class GTree final : public NodeObserver {
     NodeSummary computeOctantOfBlock(const Block& block, int octant, const ClassRecord* records,
                                      const Cube& cell, const EqualDensity& blocksDensity,
                                      double* row);
-    void addPattern(PatternTable::Entry& entry, const OctantPattern& pattern, double density);
     /** What a block's node needs of an octant. */
     void addOctant(const Block& block, int octant, const ClassRecord* records, const Cube& cell,
                    const EqualDensity& blocksDensity, Children& c);
@@ -190,12 +172,14 @@ class GTree final : public NodeObserver {
                         const double* row) const;
     const double* rowOf(const ClassRecord& record);
     const double* rowOf(Units value);
+    /** Rows of leaves asked for up to now are not in use any more. */
+    void releaseRows();
     double* buffer(int i) { return &m_buffers[i * m_gTree.layout().rowSize()]; }
 
     const GTree& m_gTree;
-    ValueRows m_valueRows;  ///< of leaves without a class record
-    RecordRows m_recordRows;
-    PatternTable m_patterns;  ///< of octants without class records
+    RowTable<Units> m_values;  ///< of leaves without a class record
+    RowTable<ClassRecord> m_records;
+    RowTable<OctantPattern> m_patterns;  ///< of octants without class records
     /** Rows of a block's octants, of a tile's blocks, and of a node that is inspected. */
     std::vector<double> m_buffers;
     std::vector<double> m_divergences;  ///< JS_t of the node that was computed last
@@ -210,7 +194,7 @@ class GTree final : public NodeObserver {
  private:
   AbstractionOptions m_options;
   RowLayout m_layout;
-  ClassFilter<float> m_filter;
+  ClassFilter m_filter;
   double m_resolution;
   int m_blockDepth;
   double m_eps;

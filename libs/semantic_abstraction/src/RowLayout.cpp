@@ -83,6 +83,12 @@ MSO_VECTORIZED void sortOctants(const Units* values, Units* sorted) {
   std::memcpy(sorted, v, sizeof v);
 }
 
+namespace {
+
+/** The row of a node from its eight children's: probabilities and entropies of yes-or-no terms, and
+ * all divergences. For terms with more outcomes the latter is still the mean of the children's
+ * entropies.
+ * \return the weighted sum of yes-or-no terms' divergences */
 MSO_VECTORIZED double mixEqualShares(const double* const children[8], const RowSizes& sizes,
                                      const double* weights, double* row, double* js) {
   return mixRow(sizes, weights, row, js,
@@ -97,11 +103,10 @@ MSO_VECTORIZED double mixShares(const double* const children[8], const double sh
   });
 }
 
+/** Entropies of yes-or-no variables, nats; n a multiple of RowSizes::kLanes. */
 MSO_VECTORIZED void binaryEntropies(const double* p, int n, double* h) {
   for (int i = 0; i < n; i += kNumLanes) store(binaryEntropy(load(p + i)), h + i);
 }
-
-namespace {
 
 using tree_abstraction::TermSet;
 

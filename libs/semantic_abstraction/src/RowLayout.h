@@ -29,18 +29,6 @@ struct RowSizes {
   int row() const { return width + terms; }
 };
 
-/** The row of a node from its eight children's: probabilities and entropies of yes-or-no terms, and
- * all divergences. For terms with more outcomes the latter is still the mean of the children's
- * entropies.
- * \return the weighted sum of yes-or-no terms' divergences */
-double mixEqualShares(const double* const children[8], const RowSizes& sizes, const double* weights,
-                      double* row, double* js);
-double mixShares(const double* const children[8], const double shares[8], const RowSizes& sizes,
-                 const double* weights, double* row, double* js);
-
-/** Entropies of yes-or-no variables, nats; n a multiple of RowSizes::kLanes. */
-void binaryEntropies(const double* p, int n, double* h);
-
 /** Sorts 64 values eight by eight, in ascending order. */
 void sortOctants(const Units* values, Units* sorted);
 
@@ -87,36 +75,26 @@ class RowLayout {
   std::vector<double> m_unknownRow;
 };
 
-inline std::size_t hashOf(const ClassRecord& record) {
-  std::uint32_t bits[3];
-  static_assert(sizeof(ClassRecord) == sizeof bits);
-  std::memcpy(bits, &record, sizeof bits);
-  std::size_t hash = 0;
-  for (const std::uint32_t b : bits) hash = (hash ^ b) * 0x9e3779b97f4a7c15u;
-  return hash ^ hash << 32;
-}
-
-struct FreeMemory {
-  void operator()(double* p) const { std::free(p); }
-};
-
 /** An octant's eight values, in ascending order. */
 struct OctantPattern {
   Units values[8];
   bool operator==(const OctantPattern& o) const { return std::memcmp(this, &o, sizeof o) == 0; }
 };
 
-/** What follows from octants' values: it is computed when first asked for, and kept. There are many
- * octants, and few patterns. */
-class PatternTable {
+/** Rows (see RowLayout), and G-values, of leaves by their values or class records, and of octants
+ * by their patterns. Each is computed when first asked for, and kept: there are many leaves and
+ * octants, and few kinds of them. A table that is full begins anew. \tparam Key of at most 16
+ * bytes, none of which is padding */
+template <typename Key>
+class RowTable {
  public:
   struct Entry {
-    OctantPattern pattern;
+    Key key;
     double gValue;
     const double* row;  ///< null: there is none yet
   };
 
-  explicit PatternTable(std::size_t rowSize)
+  explicit RowTable(std::size_t rowSize)
       : m_rowSize(rowSize),
         m_entries(kEntries),
         m_rows(static_cast<double*>(std::aligned_alloc(kLine, kMost * rowSize * sizeof(double)))) {
@@ -133,108 +111,37 @@ class PatternTable {
     if (m_size > kMost - 8) clear();
   }
 
-  /** A pattern's entry, or where it is to be. */
-  Entry& find(const OctantPattern& pattern) {
-    std::size_t i = hashOf(pattern) >> (64 - kBits);
-    while (m_entries[i].row && !(m_entries[i].pattern == pattern)) i = (i + 1) % kEntries;
-    return m_entries[i];
+  /** \param compute computes what is not there: a row, and its G-value, compute(key, row) */
+  template <typename F>
+  const Entry& find(const Key& key, const F& compute) {
+    std::size_t i = hashOf(key) >> (64 - kBits);
+    while (m_entries[i].row && !(m_entries[i].key == key)) i = (i + 1) % kEntries;
+    Entry& entry = m_entries[i];
+    if (entry.row) return entry;
+    double* const row = m_rows.get() + m_size * m_rowSize;
+    const double gValue = compute(key, row);
+    ++m_size;
+    return entry = {key, gValue, row};
   }
-  double* newRow() { return m_rows.get() + m_size++ * m_rowSize; }
 
  private:
   static constexpr int kBits = 12;
   static constexpr std::size_t kEntries = std::size_t(1) << kBits, kMost = kEntries / 2;
   static constexpr std::size_t kLine = 64;  ///< bytes that a processor fetches at once, as a rule
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
 
-  static std::size_t hashOf(const OctantPattern& p) {
-    std::uint64_t bits[2];
-    std::memcpy(bits, &p, sizeof bits);
+  static std::size_t hashOf(const Key& key) {
+    std::uint64_t bits[2] = {};
+    static_assert(sizeof(Key) <= sizeof bits);
+    std::memcpy(bits, &key, sizeof key);
     return (bits[0] * 0x9e3779b97f4a7c15u ^ bits[1]) * 0xd6e8feb86659fd93u;
   }
 
   std::size_t m_rowSize, m_size = 0;
   std::vector<Entry> m_entries;
-  std::unique_ptr<double, FreeMemory> m_rows;
-};
-
-/** Rows of leaves without a class record (see RowLayout), by their log-odds: each is computed when
- * first asked for, and kept. */
-class ValueRows {
- public:
-  explicit ValueRows(std::size_t rowSize)
-      : m_rowSize(rowSize),
-        m_known(kValues),
-        m_rows(static_cast<double*>(std::calloc(kValues * rowSize, sizeof(double)))) {
-    if (!m_rows) throw std::bad_alloc();
-  }
-
-  /** \param compute computes a row that is not there: compute(value, row) */
-  template <typename F>
-  const double* row(Units value, const F& compute) {
-    const std::size_t i = static_cast<std::uint16_t>(value);
-    double* const row = m_rows.get() + i * m_rowSize;
-    if (!m_known[i]) {
-      compute(value, row);
-      m_known[i] = 1;
-    }
-    return row;
-  }
-
- private:
-  static constexpr std::size_t kValues = 1 << 16;
-  std::size_t m_rowSize;
-  std::vector<char> m_known;
-  /** Pages that no value touches cost nothing. */
-  std::unique_ptr<double, FreeMemory> m_rows;
-};
-
-/** Rows of leaves with a class record (see RowLayout). A few records make up most of a map, and a
- * row takes exponentials and logarithms to compute. A row stays where it is until release(). */
-class RecordRows {
- public:
-  explicit RecordRows(std::size_t rowSize)
-      : m_rowSize(rowSize), m_slots(kSlots), m_rows((kSlots + kInUse) * rowSize) {}
-
-  /** Rows asked for up to now are not in use any more. At most eight are between two releases. */
-  void release() {
-    ++m_age;
-    m_numSpares = 0;
-  }
-
-  /** \param compute computes a row that is not there: compute(key, row) */
-  template <typename F>
-  const double* row(const ClassRecord& key, const F& compute) {
-    const std::size_t i = hashOf(key) >> (64 - kSlotBits);
-    Slot& slot = m_slots[i];
-    if (slot.usedAt != 0 && slot.key == key) {
-      slot.usedAt = m_age;
-      return &m_rows[i * m_rowSize];
-    }
-    return newRow(key, i, compute);
-  }
-
- private:
-  static constexpr int kSlotBits = 11, kInUse = 8;
-  static constexpr std::size_t kSlots = std::size_t(1) << kSlotBits;
-  struct Slot {
-    ClassRecord key{};
-    std::uint64_t usedAt = 0;  ///< 0: empty
-  };
-
-  template <typename F>
-  const double* newRow(const ClassRecord& key, std::size_t i, const F& compute) {
-    const bool inUse = m_slots[i].usedAt == m_age;
-    double* const row = &m_rows[(inUse ? kSlots + m_numSpares++ : i) * m_rowSize];
-    compute(key, row);
-    if (!inUse) m_slots[i] = {key, m_age};
-    return row;
-  }
-
-  std::size_t m_rowSize;
-  std::uint64_t m_age = 1;
-  std::size_t m_numSpares = 0;
-  std::vector<Slot> m_slots;
-  std::vector<double> m_rows;  ///< of the slots, then spare ones for keys that meet in a slot
+  std::unique_ptr<double, Free> m_rows;
 };
 
 }  // namespace semantic_octree

@@ -41,7 +41,8 @@ int idOf(const std::string& name, const ClassTable& classes) {
                               strict_files::joined(known) + strict_files::didYouMean(name, known));
 }
 
-/** Groups may bring a class in a second time, with the other sign.
+/** Groups may bring a class in a second time, with the other sign. Terms of several groups are left
+ * out: they tell classes apart and may well overlap with others.
  * \throw std::invalid_argument naming it. */
 void checkSigns(const std::vector<InformationTerm>& terms, const ClassTable& classes) {
   std::map<int, std::string> relevant;
@@ -301,9 +302,9 @@ AbstractionOptions AbstractionOptions::forClasses(const ClassTable& classes) con
   take("irrelevant", o.irrelevant, -1);
   if (everything != 0) o.weights.terms.push_back(everythingOf(everything, classes));
   o.everything = 0;
-  checkSigns(o.weights.terms, classes);
   for (const InformationTerm& term : weights.terms) o.weights.terms.push_back(term);
   o.weights.validate(classes.size());
+  checkSigns(o.weights.terms, classes);
   for (const std::string& text : split(std::exchange(o.regionTexts, ""), ';'))
     o.regions.push_back(Region::ofText(text));
   return o;

@@ -13,7 +13,7 @@ constexpr double kStatedBefore = 100;
 
 }  // namespace
 
-void CalibrationFit::add(const ClassBelief<float>& belief, const std::vector<double>& classes,
+void CalibrationFit::add(const ClassBelief& belief, const std::vector<double>& classes,
                          double weight) {
   const int unnamed = belief.unnamed(static_cast<int>(classes.size()));
   Question question{belief.count, unnamed, belief.ids, {}, {}, weight};

@@ -8,13 +8,6 @@
 namespace semantic_octree {
 namespace {
 
-/** Floats are put on the grid, doubles stay as they are. */
-template <typename Real>
-Real rounded(double x) {
-  if constexpr (std::is_same_v<Real, float>) return onGrid(x);
-  return static_cast<Real>(x);
-}
-
 double logit(double p) { return std::log(p / (1 - p)); }
 
 /** Counts of labels whose rows are kept. */
@@ -22,87 +15,74 @@ constexpr std::uint32_t kKeptRows = 65;
 
 }  // namespace
 
-template <typename Real, int Named>
-ClassFilter<Real, Named>::ClassFilter(int numClasses, const FilterParameters& p)
+ClassFilter::ClassFilter(int numClasses, const FilterParameters& p)
     : m_numClasses(numClasses),
       m_parameters(p),
       m_evidence(p.accuracy, std::max(2, numClasses), p.labelCorrelation) {
   p.validate(numClasses);
   const double K = numClasses;
   const double unlabeled = std::log(p.hitProbability / p.falseAlarmProbability);
-  const double accuracy = numClasses == 1 ? 1.0 : p.accuracy;
-  const double same = unlabeled + std::log(accuracy * K);
-  const double other =
-      numClasses == 1 ? unlabeled : unlabeled + std::log((1 - accuracy) * K / (K - 1));
   const double miss = std::log((1 - p.hitProbability) / (1 - p.falseAlarmProbability));
-  m_logNumClasses = rounded<Real>(std::log(K));
-  m_min = rounded<Real>(logit(p.minOccupancy)) - m_logNumClasses;
-  m_max = rounded<Real>(logit(p.maxProbability));
-  m_hitSame = rounded<Real>(same);
-  m_hitOther = rounded<Real>(other);
-  m_hitUnlabeled = rounded<Real>(unlabeled);
-  m_miss = rounded<Real>(miss);
+  m_logNumClasses = onGrid(std::log(K));
+  m_min = onGrid(logit(p.minOccupancy)) - m_logNumClasses;
+  m_max = onGrid(logit(p.maxProbability));
+  m_hitUnlabeled = onGrid(unlabeled);
+  m_miss = onGrid(miss);
   m_unlabeled = unlabeled;
   if (numClasses == 1) return;
   for (std::uint32_t n = 0; n < kKeptRows; ++n) m_rowsOfFew.push_back(rowOf(n));
-  m_rowsOfFew[1] = {m_hitSame, m_hitOther};
+  m_rowsOfFew[1] = {onGrid(unlabeled + std::log(p.accuracy * K)),
+                    onGrid(unlabeled + std::log((1 - p.accuracy) * K / (K - 1)))};
 }
 
-template <typename Real, int Named>
-auto ClassFilter<Real, Named>::trusting(const LabelReliability& labels) const -> ClassFilter {
+auto ClassFilter::trusting(const LabelReliability& labels) const -> ClassFilter {
   FilterParameters p = m_parameters;
   p.accuracy = labels.accuracy;
   p.labelCorrelation = labels.correlation;
   return ClassFilter(m_numClasses, p);
 }
 
-template <typename Real, int Named>
-double ClassFilter<Real, Named>::incrementWithoutEvidence(double most, double odds) const {
+double ClassFilter::incrementWithoutEvidence(double most, double odds) const {
   return m_unlabeled + std::log(m_numClasses / odds) - most;
 }
 
-template <typename Real, int Named>
-auto ClassFilter<Real, Named>::rowOf(std::uint32_t numLabels) const -> Row {
+auto ClassFilter::rowOf(std::uint32_t numLabels) const -> Row {
+  if (m_numClasses == 1) return {m_hitUnlabeled, m_hitUnlabeled};
   if (numLabels < m_rowsOfFew.size()) return m_rowsOfFew[numLabels];
   const double evidence = m_evidence(numLabels);
   const double odds = 1 + (m_numClasses - 1) * std::exp(-evidence);
   const double other = incrementWithoutEvidence(evidence, odds);
-  return {rounded<Real>(other + evidence), rounded<Real>(other)};
+  return {onGrid(other + evidence), onGrid(other)};
 }
 
-template <typename Real, int Named>
-auto ClassFilter<Real, Named>::uniform(Real occupancyLogOdds) const -> Belief {
+auto ClassFilter::uniform(float occupancyLogOdds) const -> Belief {
   Belief b;
   b.rest = occupancyLogOdds - m_logNumClasses;
   return b;
 }
 
-template <typename Real, int Named>
-Real ClassFilter<Real, Named>::occupancyOf(const Belief& b) const {
-  return rounded<Real>(b.occupancyLogOdds(m_numClasses));
+float ClassFilter::occupancyOf(const Belief& b) const {
+  return onGrid(b.occupancyLogOdds(m_numClasses));
 }
 
-template <typename Real, int Named>
-auto ClassFilter<Real, Named>::stated(const Belief& b) const -> Belief {
+auto ClassFilter::stated(const Belief& b) const -> Belief {
   const Calibration& calibration = m_parameters.calibration;
   if (b.count == 0 || calibration.isIdentity()) return b;
   if (!calibration.factors.empty()) return statedWithFactors(b);
   const double power = calibration.power, shared = calibration.shared;
   const double most = b.count == m_numClasses ? b.logOdds[0] : std::max(b.logOdds[0], b.rest);
-  const auto powered = [&](Real h) { return std::exp(power * (h - most)); };
+  const auto powered = [&](float h) { return std::exp(power * (h - most)); };
   double sum = b.unnamed(m_numClasses) * powered(b.rest);
   for (int i = 0; i < b.count; ++i) sum += powered(b.logOdds[i]);
   const double occupancy = b.occupancyLogOdds(m_numClasses), own = (1 - shared) / sum;
   Belief s = b;
-  s.rest = rounded<Real>(occupancy + std::log(own * powered(b.rest)));
+  s.rest = onGrid(occupancy + std::log(own * powered(b.rest)));
   for (int i = 0; i < b.count; ++i)
-    s.logOdds[i] =
-        rounded<Real>(occupancy + std::log(own * powered(b.logOdds[i]) + shared / b.count));
+    s.logOdds[i] = onGrid(occupancy + std::log(own * powered(b.logOdds[i]) + shared / b.count));
   return s;
 }
 
-template <typename Real, int Named>
-auto ClassFilter<Real, Named>::classesWithFactors(const Belief& b) const
+auto ClassFilter::classesWithFactors(const Belief& b) const
     -> std::array<double, semantic_types::kMaxClasses> {
   const auto& [power, shared, factors] = m_parameters.calibration;
   std::array<double, semantic_types::kMaxClasses> p;
@@ -117,26 +97,24 @@ auto ClassFilter<Real, Named>::classesWithFactors(const Belief& b) const
   return p;
 }
 
-template <typename Real, int Named>
-auto ClassFilter<Real, Named>::statedWithFactors(const Belief& b) const -> Belief {
+auto ClassFilter::statedWithFactors(const Belief& b) const -> Belief {
   auto p = classesWithFactors(b);
   const auto end = p.begin() + m_numClasses;
   const double occupancy = b.occupancyLogOdds(m_numClasses);
   Belief s;
-  for (const int named = std::min(Named, m_numClasses); s.count < named; ++s.count) {
+  for (const int named = std::min(Belief::kNamed, m_numClasses); s.count < named; ++s.count) {
     const auto best = std::max_element(p.begin(), end);
     s.ids[s.count] = static_cast<ClassId>(best - p.begin() + 1);
-    s.logOdds[s.count] = rounded<Real>(occupancy + std::log(*best));
+    s.logOdds[s.count] = onGrid(occupancy + std::log(*best));
     *best = 0;
   }
   const double others = std::accumulate(p.begin(), end, 0.0);
-  if (others > 0) s.rest = rounded<Real>(occupancy + std::log(others / s.unnamed(m_numClasses)));
+  if (others > 0) s.rest = onGrid(occupancy + std::log(others / s.unnamed(m_numClasses)));
   s.sort();
   return s;
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::distribution(const Belief& b, double* p) const {
+void ClassFilter::distribution(const Belief& b, double* p) const {
   stated(b).distribution(m_numClasses, p);
   if (b.count == 0 || m_parameters.calibration.factors.empty()) return;
   const auto classes = classesWithFactors(b);
@@ -144,26 +122,23 @@ void ClassFilter<Real, Named>::distribution(const Belief& b, double* p) const {
                  [occupied = 1 - p[0]](double ofOccupied) { return occupied * ofOccupied; });
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::limit(Belief& b) const {
-  Real highest = b.unnamed(m_numClasses) > 0 ? b.rest : b.logOdds[0];
+void ClassFilter::limit(Belief& b) const {
+  float highest = b.unnamed(m_numClasses) > 0 ? b.rest : b.logOdds[0];
   for (int i = 0; i < b.count; ++i) highest = std::max(highest, b.logOdds[i]);
-  const Real excess = std::max(Real(0), highest - m_max);
+  const float excess = std::max(float(0), highest - m_max);
   for (int i = 0; i < b.count; ++i) b.logOdds[i] = std::max(m_min, b.logOdds[i] - excess);
   b.rest = std::max(m_min, b.rest - excess);
   b.sort();
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::addToAll(Belief& b, Real increment) const {
+void ClassFilter::addToAll(Belief& b, float increment) const {
   for (int i = 0; i < b.count; ++i) b.logOdds[i] += increment;
   b.rest += increment;
   limit(b);
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::hitOf(Belief& b, ClassId id, Real same, Real other) const {
-  const Real observed = b.logOddsOf(id) + same;
+void ClassFilter::hitOf(Belief& b, ClassId id, float same, float other) const {
+  const float observed = b.logOddsOf(id) + same;
   const int index = b.indexOf(id);
   for (int i = 0; i < b.count; ++i) b.logOdds[i] += other;
   b.rest += other;
@@ -174,38 +149,33 @@ void ClassFilter<Real, Named>::hitOf(Belief& b, ClassId id, Real same, Real othe
   limit(b);
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::name(Belief& b, ClassId id, Real logOdds) const {
-  if (b.count < Named) {
+void ClassFilter::name(Belief& b, ClassId id, float logOdds) const {
+  if (b.count < Belief::kNamed) {
     b.ids[b.count] = id;
     b.logOdds[b.count++] = logOdds;
     return;
   }
-  // The least likely of the Named + 1 joins the m - 1 classes that stay unnamed.
-  const int last = Named - 1;
+  // The least likely of all that have a name joins the m - 1 classes that stay without.
+  const int last = Belief::kNamed - 1;
   const bool newcomerIsLeast =
       logOdds != b.logOdds[last] ? logOdds < b.logOdds[last] : id > b.ids[last];
   const double evicted = newcomerIsLeast ? logOdds : b.logOdds[last];
   const int others = b.unnamed(m_numClasses) - 1;
   const double top = std::max<double>(evicted, b.rest);
   const double odds = others * std::exp(b.rest - top) + std::exp(evicted - top);
-  b.rest = rounded<Real>(top + std::log(odds / (others + 1)));
+  b.rest = onGrid(top + std::log(odds / (others + 1)));
   if (newcomerIsLeast) return;
   b.ids[last] = id;
   b.logOdds[last] = logOdds;
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
-  if (m_rowsOfFew.empty()) return hit(b, votes->id);
+void ClassFilter::hit(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
   if (numVoted > 1) return hitOfSeveral(b, votes, numVoted);
   const Row row = rowOf(votes->count);
   hitOf(b, votes->id, row.named, row.other);
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
-                                            std::size_t numVoted) const {
+void ClassFilter::hitOfSeveral(Belief& b, const ClassVotes* votes, std::size_t numVoted) const {
   const Belief before = b;
   std::array<double, semantic_types::kMaxClasses> evidence;
   double most = 0;
@@ -214,16 +184,16 @@ void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
   double odds = static_cast<double>(m_numClasses - numVoted) * std::exp(-most);
   for (std::size_t i = 0; i < numVoted; ++i) odds += std::exp(evidence[i] - most);
   const double unnamed = incrementWithoutEvidence(most, odds);
-  const Real other = rounded<Real>(unnamed);
+  const float other = onGrid(unnamed);
   int numEvicted = 0;
   double evictedOdds = 0;
-  const auto evict = [&](Real logOdds) {
+  const auto evict = [&](float logOdds) {
     ++numEvicted;
     evictedOdds += std::exp(static_cast<double>(logOdds));
   };
-  const auto offer = [&](ClassId id, Real logOdds) {
-    const int last = Named - 1;
-    if (b.count < Named) {
+  const auto offer = [&](ClassId id, float logOdds) {
+    const int last = Belief::kNamed - 1;
+    if (b.count < Belief::kNamed) {
       b.ids[b.count] = id;
       b.logOdds[b.count++] = logOdds;
     } else if (logOdds < b.logOdds[last] || (logOdds == b.logOdds[last] && id > b.ids[last])) {
@@ -237,24 +207,23 @@ void ClassFilter<Real, Named>::hitOfSeveral(Belief& b, const ClassVotes* votes,
   };
   b = Belief();
   b.rest = before.rest + other;
-  std::array<bool, Named> voted{};
+  std::array<bool, Belief::kNamed> voted{};
   for (std::size_t i = 0; i < numVoted; ++i) {
     const int index = before.indexOf(votes[i].id);
     if (index >= 0) voted[index] = true;
-    offer(votes[i].id, before.logOddsOf(votes[i].id) + rounded<Real>(unnamed + evidence[i]));
+    offer(votes[i].id, before.logOddsOf(votes[i].id) + onGrid(unnamed + evidence[i]));
   }
   for (int i = 0; i < before.count; ++i)
     if (!voted[i]) offer(before.ids[i], before.logOdds[i] + other);
   if (numEvicted > 0) {
     const int members = b.unnamed(m_numClasses);
     const double rest = (members - numEvicted) * std::exp(static_cast<double>(b.rest));
-    b.rest = rounded<Real>(std::log((rest + evictedOdds) / members));
+    b.rest = onGrid(std::log((rest + evictedOdds) / members));
   }
   limit(b);
 }
 
-template <typename Real, int Named>
-void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
+void ClassFilter::hit(Belief& b, const float* q) const {
   const double K = m_numClasses;
   std::vector<double> p(q, q + m_numClasses);
   if (const auto& prior = m_parameters.classPrior; b.count == 0 && !prior.empty()) {
@@ -262,15 +231,15 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
     std::transform(p.begin(), p.end(), prior.begin(), p.begin(),
                    [all](double likelihood, double before) { return likelihood * before / all; });
   }
-  std::vector<Real> h(m_numClasses + 1);
+  std::vector<float> h(m_numClasses + 1);
   for (int k = 1; k <= m_numClasses; ++k)
-    h[k] = rounded<Real>(b.logOddsOf(static_cast<ClassId>(k)) + m_unlabeled +
-                         std::log(K * std::max(p[k - 1], m_parameters.softLabelFloor)));
-  const Real excess = std::max(Real(0), *std::max_element(h.begin() + 1, h.end()) - m_max);
-  for (Real& x : h) x = std::max(m_min, x - excess);
+    h[k] = onGrid(b.logOddsOf(static_cast<ClassId>(k)) + m_unlabeled +
+                  std::log(K * std::max(p[k - 1], m_parameters.softLabelFloor)));
+  const float excess = std::max(float(0), *std::max_element(h.begin() + 1, h.end()) - m_max);
+  for (float& x : h) x = std::max(m_min, x - excess);
   std::vector<ClassId> order(m_numClasses);
   std::iota(order.begin(), order.end(), ClassId{1});
-  const int named = std::min(Named, m_numClasses);
+  const int named = std::min(Belief::kNamed, m_numClasses);
   std::partial_sort(order.begin(), order.begin() + named, order.end(),
                     [&](ClassId i, ClassId j) { return h[i] != h[j] ? h[i] > h[j] : i < j; });
   b = Belief();
@@ -281,10 +250,7 @@ void ClassFilter<Real, Named>::hit(Belief& b, const float* q) const {
   if (named == m_numClasses) return;
   double odds = 0;
   for (int i = named; i < m_numClasses; ++i) odds += std::exp(h[order[i]]);
-  b.rest = rounded<Real>(std::log(odds / (m_numClasses - named)));
+  b.rest = onGrid(std::log(odds / (m_numClasses - named)));
 }
-
-template class ClassFilter<float>;
-template class ClassFilter<double>;
 
 }  // namespace semantic_octree

@@ -151,7 +151,7 @@ class TileScan {
 /** At most the log-odds of a free voxel that two scans' beams passed: halfway between one and two,
  * but no less than any number leads to. */
 float sureOf(const SemanticOcTree& map) {
-  const ClassFilter<float> filter(map.numClasses(), map.filterParameters());
+  const ClassFilter filter(map.numClasses(), map.filterParameters());
   return std::max(1.5f * filter.missIncrement(), filter.lowestOccupancy());
 }
 

@@ -1,7 +1,20 @@
-#include "Decay.h"
+#include <semantic_octree/store/LeafContent.h>
+#include <semantic_octree/store/MapAccess.h>
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
+
+/** \file
+ * How a map forgets. At each multiple of T / 8 on the map's clock a leaf with half-life T keeps
+ * 2^(-1/8) of its log-odds of occupancy, and of its classes' differences
+ * (doc/how-it-works/decay.md).
+ *
+ * A leaf's half-life is that of its likeliest class, or of free space where it is not occupied. An
+ * occupied one without a likeliest class has none. On the grid of log-odds, occupancy is rounded
+ * towards 0 and differences away from it: a leaf keeps its half-life until it is unknown. So many
+ * short times leave what a long one does, to the last bit. */
 
 namespace semantic_octree {
 namespace {
@@ -45,9 +58,24 @@ ClassRecord withDifferences(const ClassRecord& record, Units occupancy, int numC
   return ClassRecord::of(belief);
 }
 
-/** One sweep through a tree. */
+/** What is left of a leaf after some steps; nothing if its occupancy is within 0.1 of that of
+ * unknown space. */
+std::optional<LeafContent> decayed(const LeafContent& leaf, int steps, int numClasses) {
+  LeafContent left = leaf;
+  left.value = static_cast<Units>(repeated(steps, leaf.value, shrunk));
+  if (std::abs(left.value) < kForgotten) return std::nullopt;
+  if (leaf.record)
+    left.record = withDifferences(*leaf.record, left.value, numClasses, [steps](int difference) {
+      return repeated(steps, difference, shrunkAwayFromZero);
+    });
+  return left;
+}
+
+/** One sweep through a tree. Nodes are pruned, inner nodes' bookkeeping follows, and it is told
+ * where something changed, as in an insertion. */
 class Sweep {
  public:
+  /** \param steps K + 1 numbers, [0] of free space */
   Sweep(const MergeTarget& target, const std::vector<int>& steps)
       : m_nodes(target, 0), m_store(target.store), m_filter(target.filter), m_steps(steps) {
     for (std::size_t id = 0; id < steps.size(); ++id) m_fading[id] = steps[id] > 0;
@@ -105,12 +133,9 @@ class Sweep {
   }
 
   bool decayBlock(Slot& slot, const Cube& cell) {
-    const Block& block = m_store.block(slot);
+    Block& block = m_store.block(slot);
     if (!anyDecays(block)) return false;
-    const BlockContent after = decayed(m_store.contentOf(block));
-    m_nodes.arena.remove(slot);
-    if (!after.known) return true;
-    m_nodes.arena.createBlock(slot, after);
+    m_nodes.arena.fill(block, decayed(m_store.contentOf(block)));
     return finish(slot, cell);
   }
 
@@ -140,38 +165,45 @@ class Sweep {
     return after;
   }
 
-  /** A changed node. What was told of a block that was replaced is not known: it counts as
-   * reshaped. */
+  /** A changed node. A block counts as reshaped. */
   bool finish(Slot& inner, const Cube& cell) { return m_nodes.finish(inner, cell, true, true); }
 
   NodeEditor m_nodes;
   NodeStore& m_store;
-  const ClassFilter<float>& m_filter;
+  const ClassFilter& m_filter;
   const std::vector<int>& m_steps;
   ClassSet m_fading;  ///< classes with steps
 };
 
-}  // namespace
-
+/** Steps of a half-life (seconds) between two times of the map's clock (ns), 0 or more. */
 int decaySteps(double halfLife, std::int64_t from, std::int64_t to) {
   if (halfLife == semantic_types::kForever) return 0;
   const std::int64_t step = std::llround(halfLife * 1e9 / kStepsPerHalfLife);
   return static_cast<int>(std::min(kMostSteps, to / step - from / step));
 }
 
-std::optional<LeafContent> decayed(const LeafContent& leaf, int steps, int numClasses) {
-  LeafContent left = leaf;
-  left.value = static_cast<Units>(repeated(steps, leaf.value, shrunk));
-  if (std::abs(left.value) < kForgotten) return std::nullopt;
-  if (leaf.record)
-    left.record = withDifferences(*leaf.record, left.value, numClasses, [steps](int difference) {
-      return repeated(steps, difference, shrunkAwayFromZero);
-    });
-  return left;
+}  // namespace
+
+std::int64_t MapAccess::timeIn(const SemanticOcTree& map, double seconds) {
+  if (!(seconds >= 0 && seconds <= 1e9))
+    throw std::invalid_argument("a map ages by 0 to 1000000000 s, not by " +
+                                std::to_string(seconds) + " s");
+  if (!map.classes().hasHalfLives()) return map.m_clock;
+  const std::int64_t time = map.m_clock + std::llround(seconds * 1e9);
+  if (time > kOldest) throw std::out_of_range("a map ages by no more than 200 years in all");
+  return time;
 }
 
-void decay(const MergeTarget& target, const std::vector<int>& steps) {
-  Sweep(target, steps).decayAll();
+void MapAccess::ageUntil(SemanticOcTree& map, std::int64_t time) {
+  if (time == map.m_clock) return;
+  checkMayChange(map);
+  std::vector<int> steps;
+  for (int id = 0; id <= map.numClasses(); ++id)
+    steps.push_back(
+        decaySteps(map.classes().halfLife(static_cast<ClassId>(id)), map.m_clock, time));
+  map.m_clock = time;  // first, for tiles' files
+  if (!map.empty() && std::any_of(steps.begin(), steps.end(), [](int n) { return n > 0; }))
+    change(map, [&](const MergeTarget& target) { Sweep(target, steps).decayAll(); });
 }
 
 }  // namespace semantic_octree

@@ -89,9 +89,4 @@ void HitVotes::add(const float* softLabel) {
   m_endsOfLabels.push_back(0);
 }
 
-std::size_t HitVotes::bytes() const {
-  return m_labels.capacity() * sizeof(ClassId) + m_softSums.capacity() * sizeof(float) +
-         (m_endsOfLabels.capacity() + m_softCounts.capacity()) * sizeof(std::uint32_t);
-}
-
 }  // namespace semantic_octree

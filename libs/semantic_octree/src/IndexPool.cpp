@@ -1,7 +1,6 @@
 #include <semantic_octree/store/IndexPool.h>
 
 #include <algorithm>
-#include <cstring>
 #include <new>
 
 namespace semantic_octree {
@@ -24,41 +23,11 @@ std::uint32_t IndexPool::addChunk() {
   return static_cast<std::uint32_t>(n * kPerChunk);
 }
 
-void IndexPool::copy(const IndexPool& o) {
-  for (const auto& from : o.m_chunks) {
-    std::byte* to = at(addChunk());
-    if (m_stride == o.m_stride) {
-      std::memcpy(to, from.get(), kPerChunk * m_stride);
-      continue;
-    }
-    const std::size_t bytes = std::min(m_stride, o.m_stride);
-    for (std::uint32_t i = 0; i < kPerChunk; ++i) {
-      std::memcpy(to + i * m_stride, from.get() + i * o.m_stride, bytes);
-      std::memset(to + i * m_stride + bytes, 0, m_stride - bytes);
-    }
-  }
-}
-
-std::uint32_t IndexAllocator::allocate(IndexPool& pool) {
-  if (m_free.empty() && m_left == 0) {
-    m_next = pool.addChunk();
-    m_left = IndexPool::kPerChunk;
-  }
-  ++m_inUse;
-  if (m_free.empty()) {
-    --m_left;
-    return m_next++;
-  }
-  const std::uint32_t index = m_free.back();
-  m_free.pop_back();
-  return index;
-}
-
-int RunAllocator::lengthClass(int n) {
+int IndexAllocator::lengthClass(int n) {
   return static_cast<int>(std::lower_bound(kLengths, kLengths + kNumLengths, n) - kLengths);
 }
 
-std::uint32_t RunAllocator::allocate(IndexPool& pool, int n) {
+std::uint32_t IndexAllocator::allocate(IndexPool& pool, int n) {
   const int c = lengthClass(n);
   const auto length = static_cast<std::uint32_t>(kLengths[c]);
   if (m_free[c].empty() && m_left < length) {
@@ -76,7 +45,7 @@ std::uint32_t RunAllocator::allocate(IndexPool& pool, int n) {
   return index;
 }
 
-void RunAllocator::release(std::uint32_t index, int n) {
+void IndexAllocator::release(std::uint32_t index, int n) {
   const int c = lengthClass(n);
   m_free[c].push_back(index);
   m_inUse -= kLengths[c];

@@ -66,7 +66,7 @@ std::vector<double> sharesOf(const Node& node, int numClasses, const BeliefOf& b
 
 }  // namespace
 
-std::vector<double> classShares(const Node& node, const ClassFilter<float>& filter) {
+std::vector<double> classShares(const Node& node, const ClassFilter& filter) {
   return sharesOf(node, filter.numClasses(),
                   [&filter](const ClassRecord& record) { return filter.stated(record.belief()); });
 }

@@ -1,40 +1,22 @@
 #include <semantic_octree/store/MapAccess.h>
 
-#include <semantic_octree/store/NodeObserver.h>
-#include <semantic_octree/store/Scan.h>
-
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
-#include <string>
-
-#include "Decay.h"
-#include "ScanMerger.h"
 
 namespace semantic_octree {
-namespace {
-
-/** A store's nodes with room for this bookkeeping; those of tiles are away then. */
-std::unique_ptr<NodeStore> storeFor(const NodeStore& store, std::size_t stateBytes) {
-  if (!store.tiles()) return std::make_unique<NodeStore>(store, stateBytes);
-  store.tiles()->sendAway();
-  return store.copy(stateBytes, NodeStore::Tiles::StayAway);
-}
-
-}  // namespace
-
 void MapAccess::setRule(SemanticOcTree& map, std::shared_ptr<const FusionRule> rule) {
   if (!map.empty()) throw std::logic_error("a rule of fusion for a map that is not empty");
   map.m_rule = std::move(rule);
 }
 
 void MapAccess::setObserver(SemanticOcTree& map, std::unique_ptr<NodeObserver> observer) {
-  const bool isInTiles = store(map).tiles();
-  auto nodes = storeFor(store(map), observer ? observer->stateBytes() : 0);
-  if (observer && !isInTiles) recomputeAll(observer->worker(0), *nodes, nodes->root(), Cube());
+  TileSource* const tiles = store(map).tiles();
+  if (tiles) tiles->sendAway();
+  auto nodes = store(map).copy(observer ? observer->stateBytes() : 0, NodeStore::Tiles::StayAway);
+  if (observer && !tiles) recomputeAll(observer->worker(0), *nodes, nodes->root(), Cube());
   std::swap(map.m_observer, observer);
   map.m_store = std::move(nodes);  // first, so that tiles come in where the old nodes were
-  if (isInTiles) recomputeTileByTile(map);
+  if (tiles) recomputeTileByTile(map);
 }
 
 void MapAccess::recomputeTileByTile(SemanticOcTree& map) {
@@ -77,39 +59,35 @@ SemanticOcTree MapAccess::emptyWith(const SemanticOcTree& map, double resolution
   return empty;
 }
 
-void MapAccess::merge(SemanticOcTree& map, const Scan& scan, int threads) {
-  if (!scan.hasVoxels()) return;
-  checkMayChange(map);
-  if (store(map).tiles()) store(map).tiles()->prepare(scan);
-  change(map, [&](const MergeTarget& target) { mergeScan(target, scan, threads); });
-}
-
-std::int64_t MapAccess::timeIn(const SemanticOcTree& map, double seconds) {
-  if (!(seconds >= 0 && seconds <= 1e9))
-    throw std::invalid_argument("a map ages by 0 to 1000000000 s, not by " +
-                                std::to_string(seconds) + " s");
-  if (!map.classes().hasHalfLives()) return map.m_clock;
-  const std::int64_t time = map.m_clock + std::llround(seconds * 1e9);
-  if (time > kOldestMap) throw std::out_of_range("a map ages by no more than 200 years in all");
-  return time;
-}
-
-void MapAccess::ageUntil(SemanticOcTree& map, std::int64_t time) {
-  if (time == map.m_clock) return;
-  checkMayChange(map);
-  std::vector<int> steps;
-  for (int id = 0; id <= map.numClasses(); ++id)
-    steps.push_back(
-        decaySteps(map.classes().halfLife(static_cast<ClassId>(id)), map.m_clock, time));
-  map.m_clock = time;  // first, for tiles' files
-  if (!map.empty() && std::any_of(steps.begin(), steps.end(), [](int n) { return n > 0; }))
-    change(map, [&](const MergeTarget& target) { decay(target, steps); });
-}
-
 ReadLock::ReadLock(const SemanticOcTree& map) : m_store(MapAccess::store(map)) {
   m_store.beginReading();
 }
 ReadLock::~ReadLock() { m_store.endReading(); }
+
+namespace {
+
+bool areSame(const NodeStore& a, const Block& x, const NodeStore& b, const Block& y) {
+  return x.known == y.known && x.leafOctants == y.leafOctants && x.recorded == y.recorded &&
+         std::equal(x.values, x.values + 64, y.values) &&
+         (!x.recorded ||
+          std::equal(a.recordsOf(x), a.recordsOf(x) + x.numRecords(), b.recordsOf(y)));
+}
+
+}  // namespace
+
+bool areSame(const NodeStore& a, const Slot& inA, const NodeStore& b, const Slot& inB,
+             const NodeObserver* observer) {
+  a.bring(inA);
+  b.bring(inB);
+  if (inA.kind != inB.kind || inA.value != inB.value) return false;
+  if (inA.kind == Slot::Kind::LeafWithRecord) return a.record(inA) == b.record(inB);
+  if (!inA.isInner()) return true;
+  if (observer && !observer->sameState(a, inA, b, inB)) return false;
+  if (inA.kind == Slot::Kind::Block) return areSame(a, a.block(inA), b, b.block(inB));
+  for (int i = 0; i < 8; ++i)
+    if (!areSame(a, a.octant(inA).slots[i], b, b.octant(inB).slots[i], observer)) return false;
+  return true;
+}
 
 void recomputeAll(NodeObserver::Worker& worker, NodeStore& store, Slot& slot, const Cube& cell) {
   if (!slot.isInner()) return;

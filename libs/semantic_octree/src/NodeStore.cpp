@@ -12,15 +12,6 @@ NodeStore::NodeStore(std::size_t stateBytes)
       m_blocks(sizeof(Block) + (stateBytes > 0 ? kBlockStateBytes : 0)),
       m_records(sizeof(ClassRecord)) {}
 
-NodeStore::NodeStore(const NodeStore& o, std::size_t stateBytes) : NodeStore(stateBytes) {
-  m_octants.copy(o.m_octants);
-  m_blocks.copy(o.m_blocks);
-  m_records.copy(o.m_records);
-  m_root = o.m_root;
-  m_arenas = o.m_arenas;
-  for (NodeArena& arena : m_arenas) arena.m_store = this;
-}
-
 std::unique_ptr<NodeStore> NodeStore::copy(std::size_t stateBytes, Tiles tiles) const {
   auto copy = std::make_unique<NodeStore>(stateBytes);
   copy->arena(0).copy(*this, m_root, copy->m_root, tiles);
@@ -141,15 +132,20 @@ Block& NodeArena::createBlock(Slot& slot) {
 
 void NodeArena::createBlock(Slot& slot, const BlockContent& content) {
   Block& block = createBlock(slot);
-  setRecorded(block, content.recorded);  // if this fails, the block is empty
+  fill(block, content);
+  slot.value = block.highestValue();
+}
+
+void NodeArena::fill(Block& block, const BlockContent& content) {
+  const Block::Count before = block.count();
+  setRecorded(block, content.recorded);  // first, for it may fail
   std::copy_n(content.values, 64, block.values);
   block.known = content.known;
   block.leafOctants = content.leafOctants;
   ClassRecord* record = content.recorded ? m_store->recordsOf(block) : nullptr;
   for (VoxelBits bits = content.recorded; bits; bits &= bits - 1)
     *record++ = content.records[__builtin_ctzll(bits)];
-  recount({0, 0}, block.count());
-  slot.value = block.highestValue();
+  recount(before, block.count());
 }
 
 Octant& NodeArena::expandToOctant(Slot& leaf) {
@@ -283,7 +279,7 @@ void NodeArena::setRecorded(Block& block, VoxelBits recorded) {
   ClassRecord old[64];
   const int before = block.numRecords(), after = countOf(recorded);
   if (before > 0) std::copy_n(m_store->recordsOf(block), before, old);
-  if (before == 0 || after == 0 || !RunAllocator::sameLength(before, after)) {
+  if (before == 0 || after == 0 || !IndexAllocator::sameLength(before, after)) {
     if (before > 0) m_records.release(block.records, before);
     if (after > 0) block.records = m_records.allocate(m_store->m_records, after);
   }

@@ -10,7 +10,7 @@ namespace semantic_octree {
 namespace {
 
 /** Adds weight * distribution of the known leaves below a node. \return the weight that is known */
-double addMixture(const SemanticOcTree& tree, const ClassFilter<float>& filter, const Node& node,
+double addMixture(const SemanticOcTree& tree, const ClassFilter& filter, const Node& node,
                   double weight, std::vector<double>& sum, std::vector<double>& scratch) {
   if (node.isLeaf()) {
     filter.distribution(tree.belief(node), scratch.data());

@@ -64,7 +64,7 @@ std::size_t Scan::maxTiles(const InsertionOptions& options) {
 }
 
 void Scan::set(const LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor, double resolution,
-               const ClassFilter<float>& filter, const InsertionOptions& options) {
+               const ClassFilter& filter, const InsertionOptions& options) {
   const int numClasses = filter.numClasses();
   checkSizes(cloud, numClasses);
   m_beams.set(cloud, T_map_sensor, resolution, options);
@@ -206,11 +206,11 @@ void Scan::clear() {
   });
 }
 
-std::size_t Scan::bytes() const {
-  std::size_t bytes = m_beams.bytes() + m_hits.bytes() + m_clippedEnds.bytes() + m_pyramid.bytes() +
-                      m_votes.bytes();
+bool Scan::isLarge() const {
+  constexpr std::size_t kTooManyBytes = 256000000;
+  std::size_t bytes = 0;  // of the grids, beside which the other buffers are small
   for (const ScanGrid& grid : m_free) bytes += grid.bytes();
-  return bytes + m_endRanks.capacity() * sizeof(std::uint32_t) + m_carves.capacity() / 8;
+  return bytes > kTooManyBytes;
 }
 
 void HitTiles::cover(std::size_t numTiles) {
@@ -226,10 +226,6 @@ std::uint32_t HitTiles::rank() {
       next += static_cast<std::uint32_t>(countOf(tile.words[w]));
     }
   return next;
-}
-
-std::size_t HitTiles::bytes() const {
-  return m_indices.capacity() * sizeof(std::uint32_t) + m_tiles.capacity() * sizeof(Tile);
 }
 
 void ScanPyramid::cover(const ScanGrid& grid) {
@@ -261,12 +257,6 @@ void ScanPyramid::buildLevel(int level) {
           content.add(part);
         }
       }
-}
-
-std::size_t ScanPyramid::bytes() const {
-  std::size_t bytes = 0;
-  for (const Level& level : m_levels) bytes += level.cubes.capacity();
-  return bytes;
 }
 
 }  // namespace semantic_octree

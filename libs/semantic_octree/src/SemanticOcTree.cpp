@@ -1,7 +1,6 @@
 #include <semantic_octree/SemanticOcTree.h>
 #include <semantic_octree/store/MapAccess.h>
 #include <semantic_octree/store/Scan.h>
-#include <semantic_octree/store/TreeComparison.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,8 +42,7 @@ SemanticOcTree::SemanticOcTree(const SemanticOcTree& o)
   m_clock = o.m_clock;
   m_rule = o.m_rule;
   if (o.m_observer) m_observer = o.m_observer->clone();
-  m_store = nodes.tiles() ? nodes.copy(nodes.stateBytes(), NodeStore::Tiles::ComeIn)
-                          : std::make_unique<NodeStore>(nodes, nodes.stateBytes());
+  m_store = nodes.copy(nodes.stateBytes());
 }
 
 SemanticOcTree::SemanticOcTree(SemanticOcTree&& o)
@@ -78,8 +76,7 @@ bool SemanticOcTree::operator==(const SemanticOcTree& o) const {
   if (m_resolution != o.m_resolution || m_classes != o.m_classes ||
       !(m_parameters == o.m_parameters) || m_pruning != o.m_pruning || m_clock != o.m_clock)
     return false;
-  return TreeComparison(store(), o.store(), observerOf(*this, o))
-      .same(store().root(), o.store().root());
+  return areSame(store(), store().root(), o.store(), o.store().root(), observerOf(*this, o));
 }
 
 bool SemanticOcTree::isReadOnly() const { return store().tiles() && !store().tiles()->mayChange(); }
@@ -145,7 +142,7 @@ void SemanticOcTree::setClassPrior(std::vector<float> prior) {
 }
 
 void SemanticOcTree::setFilter(FilterParameters parameters) {
-  m_filter = ClassFilter<float>(numClasses(), parameters);
+  m_filter = ClassFilter(numClasses(), parameters);
   m_parameters = std::move(parameters);
 }
 
@@ -169,7 +166,7 @@ InsertionReport SemanticOcTree::insert(const LabeledCloud& cloud,
     throw;
   }
   const InsertionReport report = m_scan->report();
-  if (m_scan->bytes() > Scan::kTooManyBytes)
+  if (m_scan->isLarge())
     m_scan = nullptr;
   else
     m_scan->clear();

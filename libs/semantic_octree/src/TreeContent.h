@@ -173,19 +173,4 @@ auto numbersOf(Parameters& p) {
                     &p.labelCorrelation, &p.calibration.power, &p.calibration.shared};
 }
 
-// What is behind magic and version. Reading checks what the checksums let pass, too, so that no
-// input leads to a broken tree: \throw std::runtime_error, std::invalid_argument (bad parameters or
-// classes).
-
-/** \return its checksum: the CRC of all blocks */
-std::uint32_t writeContent(std::ostream& out, const SemanticOcTree& tree);
-/** See saveTile(). */
-std::uint32_t writeTileContent(std::ostream& out, const SemanticOcTree& tree, const Slot& octant,
-                               const Cube& cell, std::uint64_t nodes);
-/** \param checksum if not null, becomes that of the content */
-SemanticOcTree readContent(std::istream& in, std::uint32_t* checksum);
-/** See loadTile(). */
-std::uint32_t readTileContent(std::istream& in, const SemanticOcTree& tree, NodeArena& arena,
-                              Octant& octant, const Cube& cell);
-
 }  // namespace semantic_octree

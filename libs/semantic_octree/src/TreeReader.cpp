@@ -1,18 +1,31 @@
-#include <semantic_octree/Keys.h>
+#include <semantic_octree/TreeFile.h>
 #include <semantic_octree/store/LeafContent.h>
 #include <semantic_octree/store/MapAccess.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
-#include "Decay.h"
 #include "TreeContent.h"
 
 namespace semantic_octree {
 namespace {
 
+/** Checks what the checksums let pass, too, so that no input leads to a broken tree.
+ * \throw std::runtime_error (all functions), std::invalid_argument bad parameters or classes */
 class TreeReader {
  public:
-  explicit TreeReader(std::istream& in) : m_in(in) {}
+  explicit TreeReader(std::istream& in) : m_in(in) {
+    std::array<char, kMagic.size()> magic{};
+    readBytes(in, magic.data(), magic.size());
+    if (magic != kMagic) throw std::runtime_error("not a semantic octree map");
+    std::uint32_t version = 0;
+    readBytes(in, reinterpret_cast<char*>(&version), sizeof(version));
+    if (version != kVersion)
+      throw std::runtime_error("version " + std::to_string(version) + " of the format, expected " +
+                               std::to_string(kVersion));
+  }
 
   SemanticOcTree read() {
     SemanticOcTree tree = getHeader();
@@ -109,7 +122,7 @@ class TreeReader {
       if (const auto halfLife = m_in.get<double>(); halfLife != 0)
         classes.setHalfLife(static_cast<ClassId>(id), halfLife);
     const auto clock = m_in.get<std::int64_t>();
-    if (clock < 0 || clock > (classes.hasHalfLives() ? kOldestMap : 0))
+    if (clock < 0 || clock > (classes.hasHalfLives() ? MapAccess::kOldest : 0))
       throw std::runtime_error("altered: a clock that cannot be");
     return clock;
   }
@@ -227,20 +240,65 @@ class TreeReader {
   int m_numClasses = 0;
 };
 
-}  // namespace
-
-SemanticOcTree readContent(std::istream& in, std::uint32_t* checksum) {
+/** Calls read(reader). */
+template <typename F>
+auto readFrom(std::istream& in, const F& read) {
   TreeReader reader(in);
-  SemanticOcTree tree = reader.read();
-  if (checksum) *checksum = reader.checksum();
-  return tree;
+  try {
+    return read(reader);
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(std::string("altered: ") + e.what());
+  }
 }
 
-std::uint32_t readTileContent(std::istream& in, const SemanticOcTree& tree, NodeArena& arena,
-                              Octant& octant, const Cube& cell) {
-  TreeReader reader(in);
-  reader.readTile(tree, arena, octant, cell);
-  return reader.checksum();
+/** Calls read(reader), which has to read all of the file. */
+template <typename F>
+auto load(const std::string& path, const F& read) {
+  namespace fs = std::filesystem;
+  try {
+    if (fs::is_directory(path)) throw std::runtime_error("it is a folder");
+    if (fs::exists(path) && !fs::is_regular_file(path))
+      throw std::runtime_error("it is no file, but a device or a pipe");
+    errno = 0;
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw std::runtime_error(std::strerror(errno));
+    if (in.peek() == std::ifstream::traits_type::eof())
+      throw std::runtime_error("the file is empty");
+    auto content = readFrom(in, read);
+    if (in.peek() != std::ifstream::traits_type::eof())
+      throw std::runtime_error("altered: bytes after the end of the map");
+    return content;
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error("cannot load map '" + path + "': " + e.what());
+  }
+}
+
+}  // namespace
+
+SemanticOcTree readTree(std::istream& in) {
+  return readFrom(in, [](TreeReader& reader) { return reader.read(); });
+}
+
+SemanticOcTree loadTree(const std::string& path) { return loadTreeFile(path); }
+
+SemanticOcTree loadTreeFile(const std::string& path, std::uint32_t* checksum) {
+  return load(path, [&](TreeReader& reader) {
+    SemanticOcTree tree = reader.read();
+    if (checksum) *checksum = reader.checksum();
+    return tree;
+  });
+}
+
+std::uint32_t loadTile(const SemanticOcTree& tree, NodeArena& arena, Octant& octant,
+                       const Cube& cell, const std::string& path) {
+  return load(path, [&](TreeReader& reader) {
+    reader.readTile(tree, arena, octant, cell);
+    return reader.checksum();
+  });
+}
+
+std::uint32_t extendCrc(std::uint32_t crc, const void* bytes, std::size_t size) {
+  return static_cast<std::uint32_t>(crc32_z(crc, static_cast<const unsigned char*>(bytes), size));
 }
 
 }  // namespace semantic_octree

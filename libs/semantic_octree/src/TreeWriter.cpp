@@ -1,4 +1,9 @@
+#include <semantic_octree/TreeFile.h>
 #include <semantic_octree/store/MapAccess.h>
+#include <strict_files/OutputFiles.h>
+
+#include <fstream>
+#include <streambuf>
 
 #include "TreeContent.h"
 
@@ -8,8 +13,12 @@ namespace {
 class TreeWriter {
  public:
   TreeWriter(std::ostream& out, const SemanticOcTree& tree)
-      : m_out(out), m_tree(tree), m_store(MapAccess::store(tree)) {}
+      : m_out(out), m_tree(tree), m_store(MapAccess::store(tree)) {
+    out.write(kMagic.data(), kMagic.size());
+    out.write(reinterpret_cast<const char*>(&kVersion), sizeof(kVersion));
+  }
 
+  /** \return the checksum, as all that write */
   std::uint32_t write() {
     putHeader();
     m_out.put<std::uint64_t>(m_tree.size());
@@ -140,15 +149,76 @@ class TreeWriter {
   const NodeStore& m_store;
 };
 
-}  // namespace
+/** Counts what is written to it. */
+class CountingBuffer : public std::streambuf {
+ public:
+  std::size_t bytes() const { return m_bytes; }
 
-std::uint32_t writeContent(std::ostream& out, const SemanticOcTree& tree) {
-  return TreeWriter(out, tree).write();
+ private:
+  int_type overflow(int_type c) override {
+    ++m_bytes;
+    return traits_type::not_eof(c);
+  }
+  std::streamsize xsputn(const char*, std::streamsize n) override {
+    m_bytes += static_cast<std::size_t>(n);
+    return n;
+  }
+  std::size_t m_bytes = 0;
+};
+
+/** What an error of a file says, without the path that it begins with. */
+std::string reasonOf(const std::exception& error, const std::string& path) {
+  const std::string message = error.what(), named = path + ": ";
+  return message.rfind(named, 0) == 0 ? message.substr(named.size()) : message;
 }
 
-std::uint32_t writeTileContent(std::ostream& out, const SemanticOcTree& tree, const Slot& octant,
-                               const Cube& cell, std::uint64_t nodes) {
-  return TreeWriter(out, tree).writeTile(octant, cell, nodes);
+/** Calls write(writer), which tells the checksum. */
+template <typename F>
+std::uint32_t save(const SemanticOcTree& tree, const std::string& path,
+                   strict_files::StagedFile::Disk when, const F& write) {
+  try {
+    strict_files::StagedFile file(path);
+    errno = 0;
+    std::ofstream out(file.path(), std::ios::binary | std::ios::trunc);
+    const std::uint32_t checksum = write(TreeWriter(out, tree));
+    out.close();
+    if (!out)
+      throw std::runtime_error("the file could not be written completely: " +
+                               std::string(std::strerror(errno)));
+    file.commit(when);
+    return checksum;
+  } catch (const std::exception& e) {
+    throw std::runtime_error("cannot save map '" + path + "': " + reasonOf(e, path));
+  }
+}
+
+std::uint32_t writeAll(TreeWriter writer) { return writer.write(); }
+
+using strict_files::StagedFile;
+
+}  // namespace
+
+void writeTree(std::ostream& out, const SemanticOcTree& tree) { TreeWriter(out, tree).write(); }
+
+std::size_t fileSize(const SemanticOcTree& tree) {
+  CountingBuffer buffer;
+  std::ostream out(&buffer);
+  writeTree(out, tree);
+  return buffer.bytes();
+}
+
+void saveTree(const SemanticOcTree& tree, const std::string& path) {
+  save(tree, path, StagedFile::Disk::Now, writeAll);
+}
+
+std::uint32_t saveTreeFile(const SemanticOcTree& tree, const std::string& path) {
+  return save(tree, path, StagedFile::Disk::Later, writeAll);
+}
+
+std::uint32_t saveTile(const SemanticOcTree& tree, const Slot& octant, const Cube& cell,
+                       std::uint64_t nodes, const std::string& path) {
+  return save(tree, path, StagedFile::Disk::Later,
+              [&](TreeWriter writer) { return writer.writeTile(octant, cell, nodes); });
 }
 
 }  // namespace semantic_octree

@@ -214,10 +214,4 @@ std::vector<double> SearchResult::prices() const {
   return prices;
 }
 
-std::optional<double> SearchResult::retention(std::size_t term) const {
-  constexpr double kNothing = 1e-12;  // nats
-  if (full.information[term] < kNothing) return std::nullopt;
-  return optimal.information[term] / full.information[term];
-}
-
 }  // namespace reference

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -89,8 +88,6 @@ struct SearchResult {
   std::vector<std::int32_t> parents() const;
   std::vector<double> gains(const tree_abstraction::AbstractionWeights& weights) const;
   std::vector<double> prices() const;
-  /** Share of a term's information that T* retains; nothing where there is none. */
-  std::optional<double> retention(std::size_t term) const;
 };
 
 /** Finds the smallest tree that maximizes J. \param forest some leaf has a weight above 0, and all

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -38,25 +37,6 @@ void validateGroups(const InformationTerm& term, int numClasses) {
   }
 }
 
-/** Terms of several groups are left out: they tell classes apart and may well overlap with others.
- */
-void requireNoContradiction(const std::vector<InformationTerm>& terms) {
-  std::map<int, const InformationTerm*> rewarded;
-  for (const auto& term : terms) {
-    if (term.groups.size() != 1 || !(term.weight > 0)) continue;
-    for (const int id : term.groups.front()) rewarded[id] = &term;
-  }
-  for (const auto& term : terms) {
-    if (term.groups.size() != 1 || !(term.weight < 0)) continue;
-    for (const int id : term.groups.front()) {
-      const auto other = rewarded.find(id);
-      if (other == rewarded.end()) continue;
-      reject(quoted(term) + ", class " + std::to_string(id),
-             "irrelevant here and relevant in " + quoted(*other->second));
-    }
-  }
-}
-
 }  // namespace
 
 InformationTerm relevant(std::string name, double beta, std::vector<int> classes) {
@@ -83,7 +63,6 @@ void AbstractionWeights::validate(int numClasses) const {
     if (!names.insert(term.name).second) reject(quoted(term), "two terms of this name");
     validateGroups(term, numClasses);
   }
-  requireNoContradiction(terms);
 }
 
 double AbstractionWeights::eps() const {

@@ -49,26 +49,15 @@ std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 void requireForest(const std::vector<std::int32_t>& parents, const std::vector<double>& gains,
                    const std::vector<double>& prices) {
-  const auto reject = [](std::size_t i, const std::string& field, const std::string& value,
-                         const std::string& expected) {
-    throw std::invalid_argument("collapseAlphas: " + field + " of node " + std::to_string(i) +
-                                " is " + value + ", expected " + expected);
-  };
-  if (gains.size() != parents.size() || prices.size() != parents.size()) {
-    throw std::invalid_argument("collapseAlphas: " + std::to_string(parents.size()) + " parents, " +
-                                std::to_string(gains.size()) + " gains and " +
-                                std::to_string(prices.size()) +
-                                " prices, expected as many of each");
-  }
+  if (gains.size() != parents.size() || prices.size() != parents.size())
+    throw std::invalid_argument("collapseAlphas: not as many parents, gains and prices");
   for (std::size_t i = 0; i < parents.size(); ++i) {
-    const std::int32_t parent = parents[i];
-    if (parent < kNone || parent >= static_cast<std::int64_t>(i)) {
-      reject(i, "parent", std::to_string(parent), "-1 or an index below the node's");
-    }
-    if (!std::isfinite(gains[i])) reject(i, "gain", std::to_string(gains[i]), "a finite number");
-    if (!(prices[i] >= 0 && std::isfinite(prices[i]))) {
-      reject(i, "price", std::to_string(prices[i]), "a finite number >= 0");
-    }
+    const bool isParent = parents[i] >= kNone && parents[i] < static_cast<std::int64_t>(i);
+    if (isParent && std::isfinite(gains[i]) && prices[i] >= 0 && std::isfinite(prices[i])) continue;
+    throw std::invalid_argument(
+        "collapseAlphas: node " + std::to_string(i) + " has parent " + std::to_string(parents[i]) +
+        ", gain " + std::to_string(gains[i]) + ", price " + std::to_string(prices[i]) +
+        ", expected -1 or an index below the node's, a finite number, a finite number >= 0");
   }
 }
 

@@ -196,12 +196,12 @@ double Question::surprise(const BeamModel& model, const double* p, int outcome) 
   return divergence(model.after(outcome, p).data(), p);
 }
 
-double Question::entropy(const ClassBelief<float>& belief) const {
+double Question::entropy(const ClassBelief& belief) const {
   const Bounds h = entropies(belief);
   return h.lower + h.upper;
 }
 
-Bounds Question::entropies(const ClassBelief<float>& belief) const {
+Bounds Question::entropies(const ClassBelief& belief) const {
   const auto p = belief.probabilities(numClasses());
   std::vector<double> row(m_sizes);
   for (double& entry : row) entry *= p.rest;
@@ -220,8 +220,8 @@ double Question::information(const BeamModel& model, const double* p) const {
   return entropy(p) - left;
 }
 
-double Question::fallThrough(const ClassFilter<float>& filter, const BeamModel& model,
-                             const ClassBelief<float>& belief) const {
+double Question::fallThrough(const ClassFilter& filter, const BeamModel& model,
+                             const ClassBelief& belief) const {
   std::vector<double> p(m_entries.size());
   belief.distribution(numClasses(), p.data());
   auto after = belief;

@@ -93,7 +93,7 @@ class CellLook {
   const SemanticOcTree& m_map;
   const view_information::Question m_question;  ///< which class is it
   const view_information::BeamModel m_model;
-  const semantic_octree::ClassFilter<float> m_filter;
+  const semantic_octree::ClassFilter m_filter;
   const LiveCompression* m_compression = nullptr;
   ViewStyle m_style;
   Eigen::AlignedBox3d m_known;  ///< m

@@ -9,27 +9,20 @@ namespace semantic_octree {
 using semantic_types::ClassId;
 using semantic_types::kNoClass;
 
-/** Probabilities of a truncated distribution. */
-template <int Named = 3>
-struct TruncatedDistribution {
-  double free = 1;
-  double rest = 0;  ///< of each class that is not named
-  std::array<double, Named> named{};
-};
-
 /** Truncated class distribution of one cell: the log-odds h_k = ln(p(class k) / p(free)) of the
- * `Named` likeliest classes, and one value that each of the other classes has.
+ * three likeliest classes, and one value that each of the other classes has.
  *
  * Named classes are sorted by (h descending, id ascending). All operations take K, the number of
- * classes of the map. It is the exact K-class distribution as long as no more than `Named` classes
+ * classes of the map. It is the exact K-class distribution as long as no more than three classes
  * were ever seen in the cell. */
-template <typename Real, int Named = 3>
 struct ClassBelief {
-  std::array<Real, Named> logOdds{};
+  static constexpr int kNamed = 3;
+
+  std::array<float, kNamed> logOdds{};
   /** Log-odds of each class that is not named. */
-  Real rest = 0;
+  float rest = 0;
   /** Ids of the named classes; kNoClass beyond `count`. */
-  std::array<ClassId, Named> ids{};
+  std::array<ClassId, kNamed> ids{};
   std::uint8_t count = 0;
 
   /** Position of a class among the named ones, or -1. */
@@ -38,7 +31,7 @@ struct ClassBelief {
       if (ids[i] == id) return i;
     return -1;
   }
-  Real logOddsOf(ClassId id) const {
+  float logOddsOf(ClassId id) const {
     const int i = indexOf(id);
     return i < 0 ? rest : logOdds[i];
   }
@@ -47,21 +40,26 @@ struct ClassBelief {
   /** All classes are equally likely. */
   bool isUniform() const {
     return std::all_of(logOdds.begin(), logOdds.begin() + count,
-                       [this](Real h) { return h == rest; });
+                       [this](float h) { return h == rest; });
   }
 
   /** ln(p(occupied) / p(free)) = ln sum_k e^h_k. */
-  Real occupancyLogOdds(int K) const {
+  float occupancyLogOdds(int K) const {
     const double m = maxLogOdds(K);
     double sum = unnamed(K) * std::exp(rest - m);
     for (int i = 0; i < count; ++i) sum += std::exp(logOdds[i] - m);
-    return static_cast<Real>(m + std::log(sum));
+    return static_cast<float>(m + std::log(sum));
   }
 
+  struct Probabilities {
+    double free = 1;
+    double rest = 0;  ///< of each class that is not named
+    std::array<double, kNamed> named{};
+  };
   /** Softmax of the log-odds (free space has log-odds 0). */
-  TruncatedDistribution<Named> probabilities(int K) const {
+  Probabilities probabilities(int K) const {
     const double m = std::max(0.0, maxLogOdds(K));
-    TruncatedDistribution<Named> p;
+    Probabilities p;
     p.free = std::exp(-m);
     p.rest = std::exp(rest - m);
     double sum = p.free + unnamed(K) * p.rest;
@@ -74,7 +72,7 @@ struct ClassBelief {
 
   /** Writes K + 1 probabilities, p[0] = free. */
   void distribution(int K, double* p) const {
-    const TruncatedDistribution<Named> q = probabilities(K);
+    const Probabilities q = probabilities(K);
     p[0] = q.free;
     std::fill(p + 1, p + K + 1, q.rest);
     for (int i = 0; i < count; ++i) p[ids[i]] = q.named[i];

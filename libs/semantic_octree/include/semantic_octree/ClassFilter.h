@@ -25,24 +25,22 @@ struct ClassVotes {
   std::uint32_t count;
 };
 
-/** Bayes filter over {free, class 1, ..., class K} of one cell, truncated to the `Named` likeliest
- * classes.
+/** Bayes filter over {free, class 1, ..., class K} of one cell, truncated to the likeliest classes.
  *
  * An observation z adds ln(p(z | class k) / p(z | free)) to each h_k. Then, if the likeliest class
  * is above its limit, all are lowered by the excess. Clamping one by one would make equal what is
  * not. Each is clamped from below.
  *
- * A class seen for the first time begins with the rest's value. If more than `Named` classes are
+ * A class seen for the first time begins with the rest's value. If more than three classes are
  * named, the least likely one (largest id on a tie) joins the rest. The rest's value becomes the
  * logarithm of the mean odds of its members.
  *
- * With Real = float, increments, limits and the prior are on the grid of onGrid(), and adding them
+ * Increments, limits and the prior are on the grid of onGrid(), and adding them
  * is exact. So away from the limits the order of observations does not matter, not even to the last
  * bit. */
-template <typename Real, int Named = 3>
 class ClassFilter {
  public:
-  using Belief = ClassBelief<Real, Named>;
+  using Belief = ClassBelief;
 
   /** \throw std::invalid_argument K < 1 or bad parameters. */
   ClassFilter(int numClasses, const FilterParameters& parameters);
@@ -53,7 +51,10 @@ class ClassFilter {
   ClassFilter trusting(const LabelReliability& labels) const;
 
   /** A return with a class label ended in the cell. */
-  void hit(Belief& b, ClassId id) const { hitOf(b, id, m_hitSame, m_hitOther); }
+  void hit(Belief& b, ClassId id) const {
+    const ClassVotes votes{id, 1};
+    hit(b, &votes, 1);
+  }
   /** Returns of one scan with labels ended in the cell, n_k of them of class k. They are one
    * observation with q_k proportional to exp(f(n_k)), f = LabelEvidence. The q of a single label is
    * (accuracy, (1 - accuracy) / (K - 1), ...). Labels of one scan that agree add less than scans
@@ -69,7 +70,7 @@ class ClassFilter {
   void miss(Belief& b) const { addToAll(b, m_miss); }
 
   /** Cell whose classes are equally likely, given its occupancy's log-odds. */
-  Belief uniform(Real occupancyLogOdds) const;
+  Belief uniform(float occupancyLogOdds) const;
   /** What is stated of a cell's classes (see Calibration); its occupancy is the belief's. With
    * factors it names the likeliest classes, whether the belief names them or not. */
   Belief stated(const Belief& b) const;
@@ -77,23 +78,23 @@ class ClassFilter {
    * named have their own. */
   void distribution(const Belief& b, double* p) const;
   /** Occupancy of a cell with a class record, ln(p(occupied) / p(free)); on the grid. */
-  Real occupancyOf(const Belief& b) const;
+  float occupancyOf(const Belief& b) const;
   /** The log-odds that uniform() of a cell had, given its rest. */
-  Real occupancyOfUniform(Real rest) const { return rest + m_logNumClasses; }
+  float occupancyOfUniform(float rest) const { return rest + m_logNumClasses; }
 
   /** Occupancy log-odds of a cell without a class record after another miss or unlabeled hit: the
    * same as the filter's on uniform(), without the detour. */
-  Real occupancyAfterMiss(Real v) const { return limitedOccupancy(v + m_miss); }
-  Real occupancyAfterUnlabeledHit(Real v) const { return limitedOccupancy(v + m_hitUnlabeled); }
+  float occupancyAfterMiss(float v) const { return limitedOccupancy(v + m_miss); }
+  float occupancyAfterUnlabeledHit(float v) const { return limitedOccupancy(v + m_hitUnlabeled); }
   /** The value that further misses leave as it is. */
-  Real lowestOccupancy() const { return m_min + m_logNumClasses; }
-  Real highestOccupancy() const { return m_max + m_logNumClasses; }
+  float lowestOccupancy() const { return m_min + m_logNumClasses; }
+  float highestOccupancy() const { return m_max + m_logNumClasses; }
   /** What a miss adds to log-odds, away from the limits. */
-  Real missIncrement() const { return m_miss; }
+  float missIncrement() const { return m_miss; }
   /** Puts all values into their limits and restores the order. */
   void limit(Belief& b) const;
   /** The limits for the occupancy of a cell without a class record. */
-  Real limitedOccupancy(Real v) const {
+  float limitedOccupancy(float v) const {
     return std::min(highestOccupancy(), std::max(lowestOccupancy(), v));
   }
 
@@ -101,13 +102,13 @@ class ClassFilter {
   Belief statedWithFactors(const Belief& b) const;
   /** p(class k + 1 | occupied) as it is stated with factors. */
   std::array<double, semantic_types::kMaxClasses> classesWithFactors(const Belief& b) const;
-  void addToAll(Belief& b, Real increment) const;
-  void hitOf(Belief& b, ClassId id, Real same, Real other) const;
+  void addToAll(Belief& b, float increment) const;
+  void hitOf(Belief& b, ClassId id, float same, float other) const;
   void hitOfSeveral(Belief& b, const ClassVotes* votes, std::size_t numVoted) const;
-  void name(Belief& b, ClassId id, Real logOdds) const;
+  void name(Belief& b, ClassId id, float logOdds) const;
   /** What labels of one scan that agree add to their class and to each other one. */
   struct Row {
-    Real named, other;
+    float named, other;
   };
   Row rowOf(std::uint32_t numLabels) const;
   /** What labels add to a class without evidence, not rounded; each class adds its evidence to it.
@@ -116,15 +117,12 @@ class ClassFilter {
 
   int m_numClasses;
   FilterParameters m_parameters;
-  Real m_logNumClasses, m_min, m_max;
-  Real m_hitSame, m_hitOther, m_hitUnlabeled, m_miss;
+  float m_logNumClasses, m_min, m_max;
+  float m_hitUnlabeled, m_miss;
   double m_unlabeled;  ///< not rounded
   LabelEvidence m_evidence;
   /** By number of labels; empty with a single class. */
   std::vector<Row> m_rowsOfFew;
 };
-
-extern template class ClassFilter<float>;
-extern template class ClassFilter<double>;
 
 }  // namespace semantic_octree

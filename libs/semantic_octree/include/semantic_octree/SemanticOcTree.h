@@ -59,7 +59,7 @@ struct RayHit {
 class SemanticOcTree {
  public:
   using Node = SemanticOcTreeNode;
-  using Belief = ClassBelief<float>;
+  using Belief = ClassBelief;
   using leaf_iterator = TreeIterator;
   using tree_iterator = TreeIterator;
   using leaf_bbx_iterator = TreeIterator;
@@ -219,7 +219,7 @@ class SemanticOcTree {
   double m_resolution;
   ClassTable m_classes;
   FilterParameters m_parameters;
-  ClassFilter<float> m_filter;
+  ClassFilter m_filter;
   std::shared_ptr<const FusionRule> m_rule;  ///< null: the filter
   bool m_pruning = true;
   std::int64_t m_clock = 0;                  ///< ns; stands still while nothing has a half-life

@@ -39,8 +39,7 @@ struct AbstractionWeights {
   /** Checks all fields for a map of numClasses classes (K; free space not counted).
    * \throw std::invalid_argument naming the field and its value: a weight or alpha that is not
    * finite, or alpha < 0. Groups that are missing or empty, with a class outside 0..K, or with a
-   * class in two groups of a term. Two terms of one name. A class that one yes-or-no term rewards
-   * and another one penalizes. */
+   * class in two groups of a term. Two terms of one name. */
   void validate(int numClasses) const;
 
   /** G-values (per unit of p(n)) up to this count as 0: rounding must not expand a tie. */

@@ -49,7 +49,7 @@ class Question {
   int numClasses() const { return m_terms.numClasses(); }
   /** Weighted entropy H of K + 1 probabilities. */
   double entropy(const double* p) const;
-  double entropy(const semantic_octree::ClassBelief<float>& belief) const;
+  double entropy(const semantic_octree::ClassBelief& belief) const;
   /** (c): what the outcome of a beam that reaches the cell tells. It may be negative: looking is no
    * loss then, but worth nothing. */
   double information(const BeamModel& model, const double* p) const;
@@ -65,15 +65,15 @@ class Question {
   double surprise(const BeamModel& model, const double* p, int outcome) const;
   /** (d): the expected fall of entropy when the filter gets the outcome, with its limits; below 0
    * as above. At limits the filter forgets: of what is to be ignored that is no gain. */
-  double fallThrough(const semantic_octree::ClassFilter<float>& filter, const BeamModel& model,
-                     const semantic_octree::ClassBelief<float>& belief) const;
+  double fallThrough(const semantic_octree::ClassFilter& filter, const BeamModel& model,
+                     const semantic_octree::ClassBelief& belief) const;
   /** A class of each kind: no term tells classes of one kind apart. \return for each class 1..K the
    * first class of its kind; [0] is not used */
   const std::vector<int>& kinds() const { return m_kinds; }
 
  private:
   std::vector<double> rowOf(const double* p) const;
-  Bounds entropies(const semantic_octree::ClassBelief<float>& belief) const;
+  Bounds entropies(const semantic_octree::ClassBelief& belief) const;
   Bounds entropiesOfRow(const std::vector<double>& row) const;
   template <class Of, class OfRest>
   Bounds sumsOverTerms(Of of, OfRest ofRest) const;

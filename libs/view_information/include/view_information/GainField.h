@@ -107,7 +107,7 @@ class GainField {
     float known = 0;  ///< nats
   };
   struct Computed {
-    semantic_octree::ClassBelief<float> belief;  ///< of a class record
+    semantic_octree::ClassBelief belief;  ///< of a class record
     float logOdds = std::numeric_limits<float>::quiet_NaN();
     bool hasRecord = false;
     Voxel voxel{};
@@ -141,7 +141,7 @@ class GainField {
   semantic_octree::SemanticOcTree& m_map;
   const Question& m_question;
   BeamModel m_model;
-  semantic_octree::ClassFilter<float> m_filter;
+  semantic_octree::ClassFilter m_filter;
   semantic_octree::MapFollower m_follower;
   std::vector<Computed> m_computed;
   std::vector<double> m_nothingKnown;

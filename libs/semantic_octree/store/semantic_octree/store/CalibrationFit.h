@@ -49,7 +49,7 @@ class CalibrationFit {
  public:
   /** A cell of which the filter believes this.
    * \param classes K probabilities of what it is */
-  void add(const ClassBelief<float>& belief, const std::vector<double>& classes, double weight);
+  void add(const ClassBelief& belief, const std::vector<double>& classes, double weight);
   bool empty() const { return m_questions.empty(); }
   /** What makes -sum weight sum_k p_k ln(stated p(class k | occupied)) least, p_k what cells are.
    * \param calibration where the search begins; where nothing is shared, or no class has a factor,

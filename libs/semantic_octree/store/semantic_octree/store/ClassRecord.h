@@ -6,7 +6,7 @@
 
 namespace semantic_octree {
 
-using Belief = ClassBelief<float>;
+using Belief = ClassBelief;
 
 /** Log-odds in 16 bits: multiples of the filter's unit. */
 using Units = std::int16_t;

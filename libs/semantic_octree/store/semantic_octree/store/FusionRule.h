@@ -31,18 +31,19 @@ class BlockFusion {
   virtual Result update(Block& block, const BlockScan& scan) = 0;
 };
 
+/** The class filter's. */
+std::unique_ptr<BlockFusion> fusionBy(ClassFilter filter, NodeStore& store, NodeArena& arena,
+                                      bool pruning);
+
 /** What observations make of voxels. What a voxel is, is for all rules the same: log-odds of its
- * occupancy, and a class record where labels were seen. (FilterRule makes one of a filter of single
- * voxels.) */
+ * occupancy, and a class record where labels were seen. */
 class FusionRule {
  public:
   virtual ~FusionRule() = default;
-  /** This rule for a scan whose labels are trusted otherwise. */
-  virtual std::unique_ptr<const FusionRule> trusting(const LabelReliability& labels) const = 0;
-  /** One thread's part; the rule must outlive it. \param pruning octants whose voxels agree become
-   * leaves */
-  virtual std::unique_ptr<BlockFusion> begin(NodeStore& store, NodeArena& arena,
-                                             bool pruning) const = 0;
+  /** One thread's part of a scan; the rule must outlive it. \param pruning octants whose voxels
+   * agree become leaves \param labels how far the scan's are trusted */
+  virtual std::unique_ptr<BlockFusion> begin(NodeStore& store, NodeArena& arena, bool pruning,
+                                             const LabelReliability& labels) const = 0;
 };
 
 }  // namespace semantic_octree

@@ -48,8 +48,6 @@ class HitVotes {
   /** The next voxel's mean of soft labels; null if there are none for it. */
   void add(const float* softLabel);
 
-  std::size_t bytes() const;
-
  private:
   void collectLabels(const semantic_types::LabeledCloud& cloud,
                      const std::vector<std::uint32_t>& voxels);

@@ -23,9 +23,6 @@ class IndexPool {
 
   /** Adds kPerChunk elements. \return the first one's number \throw std::bad_alloc */
   std::uint32_t addChunk();
-  /** Takes another pool's elements, as many bytes of each as both have; the others are 0. This one
-   * must be empty. */
-  void copy(const IndexPool& o);
 
   static constexpr std::uint32_t kPerChunk = 1024;
 
@@ -44,33 +41,17 @@ class IndexPool {
   std::atomic<std::byte**> m_directory{nullptr};
 };
 
-/** One thread's way to take elements of a pool, and to give them back. */
+/** One thread's way to take elements of a pool, and to give them back: runs of up to 64 behind each
+ * other. Runs of a few lengths are given out; a run of n elements is one of the next length. */
 class IndexAllocator {
  public:
-  std::uint32_t allocate(IndexPool& pool);
-  void release(std::uint32_t index) {
-    m_free.push_back(index);
-    --m_inUse;
-  }
-  /** Elements taken less given back; an allocator may be given what another has taken. */
+  std::uint32_t allocate(IndexPool& pool, int n = 1);
+  void release(std::uint32_t index, int n = 1);
+  /** Elements taken less given back; an allocator may be given what another has taken. A run counts
+   * with all elements of its length. */
   long inUse() const { return m_inUse; }
-  /** Elements given back and not taken again. */
-  std::size_t spare() const { return m_free.size(); }
-
- private:
-  std::vector<std::uint32_t> m_free;
-  std::uint32_t m_next = 0, m_left = 0;
-  long m_inUse = 0;
-};
-
-/** Gives out runs of up to 64 elements. Runs of a few lengths are given out; a run of n elements
- * is one of the next length. */
-class RunAllocator {
- public:
-  std::uint32_t allocate(IndexPool& pool, int n);
-  void release(std::uint32_t index, int n);
-  /** See IndexAllocator. A run counts with all elements of its length. */
-  long inUse() const { return m_inUse; }
+  /** Single elements given back and not taken again. */
+  std::size_t spare() const { return m_free[0].size(); }
   /** Whether a run of n elements would do for m as well, and no shorter one. */
   static bool sameLength(int n, int m) { return lengthClass(n) == lengthClass(m); }
 

@@ -23,7 +23,7 @@ struct LeafContent {
  * leaves below in which labels were seen. (Free space and what was hit without a label know nothing
  * of classes; with them, a cell that holds both would state too little.) Empty if there are none.
  */
-std::vector<double> classShares(const Node& node, const ClassFilter<float>& filter);
+std::vector<double> classShares(const Node& node, const ClassFilter& filter);
 
 /** What a leaf holds, or an inner node that becomes one: occupancy of its most occupied leaf,
  * classes as they are believed to be. */

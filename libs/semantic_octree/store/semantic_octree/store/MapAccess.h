@@ -17,7 +17,7 @@ class MapAccess {
     map.m_store = std::move(store);
     tellAll(map);
   }
-  static const ClassFilter<float>& filter(const SemanticOcTree& map) { return map.m_filter; }
+  static const ClassFilter& filter(const SemanticOcTree& map) { return map.m_filter; }
 
   /** What observations make of voxels; null: the class filter. Copies of the map, and maps that are
    * like it, have it, too; files do not: whoever goes on with one sets it anew.
@@ -63,6 +63,8 @@ class MapAccess {
   /** An empty map of the same kind and time. \param resolution its voxels' edge, m */
   static SemanticOcTree emptyWith(const SemanticOcTree& map, double resolution);
 
+  /** The clock's highest time, ns: 200 years. */
+  static constexpr std::int64_t kOldest = 200LL * 365 * 86400 * 1000000000;
   /** The map's clock, ns. */
   static std::int64_t clock(const SemanticOcTree& map) { return map.m_clock; }
   static void setClock(SemanticOcTree& map, std::int64_t time) { map.m_clock = time; }

@@ -9,7 +9,7 @@ class FusionRule;
 /** A tree that is changed, and who has to know. */
 struct MergeTarget {
   NodeStore& store;
-  const ClassFilter<float>& filter;
+  const ClassFilter& filter;
   /** What observations make of voxels; null: the filter. */
   const FusionRule* rule;
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */

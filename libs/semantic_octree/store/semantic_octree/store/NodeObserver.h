@@ -36,6 +36,11 @@ class NodeObserver {
   virtual std::unique_ptr<NodeObserver> clone() const = 0;
 };
 
+/** Whether two nodes of two trees are the same, and all that is below. \param observer of both,
+ * whose bookkeeping counts; null: it does not */
+bool areSame(const NodeStore& a, const Slot& inA, const NodeStore& b, const Slot& inB,
+             const NodeObserver* observer);
+
 /** Has it all computed, of a node and all inner nodes below. */
 void recomputeAll(NodeObserver::Worker& worker, NodeStore& store, Slot& slot, const Cube& cell);
 

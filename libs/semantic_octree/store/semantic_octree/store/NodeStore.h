@@ -142,16 +142,14 @@ class NodeStore {
  public:
   /** \param stateBytes size of the bookkeeping of an inner node above the blocks, 0 for none. */
   explicit NodeStore(std::size_t stateBytes);
-  /** A copy with room for this bookkeeping (copied if both have the same size). */
-  NodeStore(const NodeStore& o, std::size_t stateBytes);
   NodeStore(const NodeStore&) = delete;
   /** What becomes of tiles in a copy. */
   enum class Tiles {
     StayAway,  ///< those that are away are away in the copy, too, which has the same source
     ComeIn     ///< one after the other; the copy is in memory
   };
-  /** A copy as above of the nodes alone, and not of the memory that is set aside. */
-  std::unique_ptr<NodeStore> copy(std::size_t stateBytes, Tiles tiles) const;
+  /** A copy with room for this bookkeeping (copied if both have the same size). */
+  std::unique_ptr<NodeStore> copy(std::size_t stateBytes, Tiles tiles = Tiles::ComeIn) const;
 
   Slot& root() { return m_root; }
   const Slot& root() const { return m_root; }
@@ -266,6 +264,8 @@ class NodeArena {
   Block& createBlock(Slot& slot);
   /** The same, as a whole. */
   void createBlock(Slot& slot, const BlockContent& content);
+  /** Replaces all that a block holds. */
+  void fill(Block& block, const BlockContent& content);
   /** A leaf gets children, each a copy of it. */
   Octant& expandToOctant(Slot& leaf);
   Block& expandToBlock(Slot& leaf);
@@ -301,8 +301,7 @@ class NodeArena {
   void becomeInner(Slot& slot, Slot::Kind kind, std::uint32_t index);
 
   NodeStore* m_store;
-  IndexAllocator m_octants, m_blocks;
-  RunAllocator m_records;
+  IndexAllocator m_octants, m_blocks, m_records;
   long m_nodes = 0, m_inner = 0;
 };
 

@@ -44,8 +44,6 @@ class HitTiles {
     return t.ranks[word] + static_cast<std::uint32_t>(countOf(t.words[word] & below));
   }
 
-  std::size_t bytes() const;
-
  private:
   std::vector<std::uint32_t> m_indices;  ///< among m_tiles
   std::vector<Tile> m_tiles;             ///< the first one is empty
@@ -97,7 +95,6 @@ class ScanPyramid {
     if ((i < 0).any() || (i >= l.size).any()) return {};
     return l.cubes[l.indexOf(i)];
   }
-  std::size_t bytes() const;
 
  private:
   struct Level {
@@ -122,7 +119,7 @@ class Scan {
    * \throw std::out_of_range the sensor is outside the map
    * \throw std::invalid_argument sizes of the cloud's vectors do not match, or a class above K. */
   void set(const semantic_types::LabeledCloud& cloud, const Eigen::Isometry3d& T_map_sensor,
-           double resolution, const ClassFilter<float>& filter, const InsertionOptions& options);
+           double resolution, const ClassFilter& filter, const InsertionOptions& options);
 
   /** Replaces the content by what will come: tiles in a box, which is not empty, one by one
    * (addTile()), then finish(). \param labels how far they are trusted \param options its memory's
@@ -154,11 +151,8 @@ class Scan {
   bool hasVoxels() const { return report().hitVoxels + report().freeVoxels > 0; }
   /** Forgets the voxels, keeps the buffers. */
   void clear();
-  /** Larger buffers are not kept for the next scan. */
-  static constexpr std::size_t kTooManyBytes = 256000000;
-
-  /** Bytes of the buffers. */
-  std::size_t bytes() const;
+  /** Whether the buffers are too large to be kept for the next scan. */
+  bool isLarge() const;
 
  private:
   /** Tiles whose bits, and what is noted of them, fit into InsertionOptions::maxScanMemory. */

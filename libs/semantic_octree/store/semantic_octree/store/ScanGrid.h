@@ -54,7 +54,6 @@ class ScanBeams {
   const VoxelIndex& highest() const { return m_highest; }
   /** How many points became what. */
   const InsertionReport& report() const { return m_report; }
-  std::size_t bytes() const { return m_beams.capacity() * sizeof(Beam); }
 
   static VoxelIndex voxelOf(const Eigen::Array3d& u) {
     return {floorOf(u.x()), floorOf(u.y()), floorOf(u.z())};
