@@ -36,7 +36,8 @@ Grid gridOf(const ground_costs::GroundCosts& costs);
 /** What is in a vehicle's way, whatever its class: kLethal where something is higher above the
  * ground than its step and lower than its top, free where nothing is, as far as that was seen. The
  * ground is the lowest occupied voxel of each column; what stands out of it and is narrower than
- * 4 m is none. \param floor the ground is flat and at this height (m), and need not be in the map
+ * 4 m is none. (That of planners climbs fences whose class it does not know, for single voxels are
+ * stairs.) \param floor the ground is flat and at this height (m), and need not be in the map
  * \throw std::runtime_error the map is empty or too wide */
 Grid gridOf(const semantic_octree::SemanticOcTree& map,
             const semantic_planning::VehicleOptions& vehicle, std::optional<double> floor);

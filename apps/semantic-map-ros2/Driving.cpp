@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <ostream>
 #include <utility>
 
@@ -19,7 +18,6 @@ void GroundGrid::publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot
   if (!m_writes.isRead()) return;
   const auto changed = m_costs.follow(T_map_robot);
   if (!m_costs.box()) return;
-  sayFrameHeight();
   const bool isNew = !m_box || !(*m_box == *m_costs.box()) || m_writes.hasNewReader();
   m_box = m_costs.box();
   const ros2::Header header = ros2::headerOf(stamp, m_frame);
@@ -27,17 +25,6 @@ void GroundGrid::publish(ros2::Stamp stamp, const Eigen::Isometry3d& T_map_robot
     publishAll(header);
   else if (changed)
     publishUpdate(header, *changed);
-}
-
-void GroundGrid::sayFrameHeight() {
-  const auto height = m_costs.frameHeight();
-  if (std::exchange(m_seesGround, height.has_value()) == height.has_value()) return;
-  if (height)
-    notes() << "The robot's frame is " << std::fixed << std::setprecision(1) << *height
-            << " m above the ground" << std::endl;
-  else
-    notes() << "The ground below the robot was not seen yet: all ground counts as reachable"
-            << std::endl;
 }
 
 void GroundGrid::publishAll(const ros2::Header& header) {

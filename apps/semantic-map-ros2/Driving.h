@@ -32,12 +32,10 @@ class GroundGrid {
   using Box = ground_costs::GroundCosts::Box;
   void publishAll(const ros2::Header& header);
   void publishUpdate(const ros2::Header& header, const Box& changed);
-  void sayFrameHeight();
 
   ground_costs::GroundCosts m_costs;
   std::string m_frame;
-  std::optional<Box> m_box;          ///< that was published
-  std::optional<bool> m_seesGround;  ///< that was said
+  std::optional<Box> m_box;  ///< that was published
   ros2::Publication<ros2::OccupancyGrid> m_writes;
   ros2::Publication<ros2::OccupancyGridUpdate> m_writesUpdates;
 };

@@ -220,16 +220,3 @@ TEST_F(RoadInGrass, isSeenByTheDisplaysOfTheRvizFile) {
     EXPECT_EQ(frame, world);
   EXPECT_EQ(live->end(), kStopped) << live->said();
 }
-
-TEST_F(RoadInGrass, isSavedByAMessage) {
-  start({});
-  ros2::Publication<ros2::Empty> save(live->node(), "/semantic_map/save", {});
-  see(1);
-  live->send(save, {});
-  ASSERT_TRUE(live->waitFor([&] { return contains(live->said(), ": saved"); }));
-  const auto saved = live->map();
-  EXPECT_FALSE(saved.empty());
-  see(2);
-  EXPECT_EQ(live->end(), kStopped);
-  EXPECT_FALSE(live->map() == saved);
-}

@@ -3,8 +3,6 @@
 #include <map_folders/MapFolder.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/maps/CMultiMetricMap.h>
-#include <mrpt/maps/CSimpleMap.h>
-#include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <semantic_octree/TreeFile.h>
 #include <sys/resource.h>
 #include <atomic>
@@ -212,21 +210,6 @@ TEST_F(InFolder, namesATileThatCannotBeRead) {
   EXPECT_TRUE(contains(errorOf([&] { likelihoodsOf(damaged); }), "tile_"));
   EXPECT_TRUE(contains(errorOf([&] { damaged.setAbstraction(someAbstraction()); }), "tile_"));
   EXPECT_FALSE(damaged.abstractionOptions().isSet());
-}
-
-TEST(MapInANewFolder, isFilledFromFrames) {
-  const TemporaryFolder folder;
-  CSemanticOctoMap map = empty(), plain = empty();
-  map.openFolder(tilesIn(folder / "tiles"));
-  mrpt::maps::CSimpleMap frames;
-  const auto frame = mrpt::obs::CSensoryFrame::Create();
-  frame->insert(labeled_cloud::CObservationLabeledCloud::Create(
-      labeledPoints({{3, 1, 0}, {-4, 2, 1}}, {1, 2})));
-  frames.insert(mrpt::poses::CPose3DPDFGaussian::Create(CPose3D(1, 2, 0, 0, 0, 0)), frame);
-  map.loadFromSimpleMap(frames);
-  plain.loadFromSimpleMap(frames);
-  EXPECT_FALSE(map.isEmpty());
-  EXPECT_TRUE(treeOf(map) == treeOf(plain));
 }
 
 TEST(MapInANewFolder, hasTheFilterThatItBeganWith) {

@@ -44,20 +44,6 @@ class Viewers : public StockApps {
     return map;
   }
 
-  /** Leaves drive/drive.rawlog. */
-  void driveFor(double seconds) const {
-    folder.write("drive.ini",
-                 "[planner]\nvehicle = config/vehicles/robot.yaml\n[drive]\n"
-                 "reactive = config/reactive/robot.ini\ntimeLimit = " +
-                     std::to_string(seconds) + "\n");
-    const ProgramRun drive =
-        run(MSO_BIN_DIR
-            "/semantic-map-drive --start=-14,-19,10 --goal=-6,-17,20 "
-            "--order config/orders/synthetic.yaml --config drive.ini --output drive "
-            "--no-pictures");
-    ASSERT_EQ(drive.status, 2) << drive.output;  // not arrived in so short a time
-  }
-
   void cutVillage() const {
     mrpt::obs::CRawlog rawlog;
     ASSERT_TRUE(rawlog.loadFromRawLogFile((folder / "rawlog-samples/village.rawlog").string()));
@@ -105,13 +91,6 @@ TEST_F(Viewers, rawLogViewerListsLabeledCloudsAndWithoutThePluginStopsAtTheFirst
   const cv::Point nowhere(300, 560);
   EXPECT_EQ(linesOfText(screenOf(withPlugin("RawLogViewer") + "short.rawlog", nowhere)), 13);
   EXPECT_EQ(linesOfText(screenOf("RawLogViewer short.rawlog", nowhere)), 3);
-}
-
-TEST_F(Viewers, rawLogViewerListsWhatARobotSawOnItsDrive) {
-  driveFor(1.9);
-  const cv::Point cloud(150, 156);  // the fourth line
-  const cv::Mat screen = screenOf(withPlugin("RawLogViewer") + "drive/drive.rawlog", cloud);
-  EXPECT_EQ(linesOfText(screen), 1 + 4 * 3);  // four times a pose, an image and a cloud
 }
 
 TEST_F(Viewers, rawLogViewerShowsAMapInAnArchive) {

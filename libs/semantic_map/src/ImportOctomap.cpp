@@ -105,28 +105,17 @@ class Nodes {
   std::size_t m_payload, m_next = 0, m_count = 0;
 };
 
-/** The nodes of a ColorOcTree without their colors. */
-std::string withoutColors(const std::string& bytes) {
-  std::string plain;
-  for (std::size_t i = 0; i + 8 <= bytes.size(); i += 8) plain += bytes.substr(i, 4) + bytes[i + 7];
-  return plain;
-}
-
 /** A file whose nodes were followed. */
 struct Checked {
   Header header;
   std::string nodes;
 
   template <class Tree>
-  std::unique_ptr<Tree> tree(const std::string& bytes) const {
+  std::unique_ptr<Tree> tree() const {
     auto tree = std::make_unique<Tree>(header.resolution);
-    std::istringstream in(bytes);
+    std::istringstream in(nodes);
     if (header.size > 0) header.binary ? tree->readBinaryData(in) : tree->readData(in);
     return tree;
-  }
-  std::unique_ptr<octomap::OcTree> occupancy() const {
-    return tree<octomap::OcTree>(header.isColored() && !header.binary ? withoutColors(nodes)
-                                                                      : nodes);
   }
 };
 
@@ -152,9 +141,9 @@ semantic_octree::SemanticOcTree mapOf(const Checked& content,
   const auto& classes = like                     ? like->classes()
                         : header.classes.empty() ? CSemanticOctoMap::occupancyOnly()
                                                  : header.classes;
-  if (header.isColored() && !header.binary && (like || !header.classes.empty()))
-    return fromOcTree(*content.tree<octomap::ColorOcTree>(content.nodes), classes, filter);
-  return fromOcTree(*content.occupancy(), classes, filter);
+  if (header.isColored() && !header.binary)
+    return fromOcTree(*content.tree<octomap::ColorOcTree>(), classes, filter);
+  return fromOcTree(*content.tree<octomap::OcTree>(), classes, filter);
 }
 
 }  // namespace

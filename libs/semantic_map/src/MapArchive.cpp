@@ -1,4 +1,3 @@
-#include <labeled_cloud/CObservationLabeledCloud.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_octree/TreeFile.h>
@@ -17,18 +16,12 @@ using mrpt::serialization::CArchive;
 
 namespace {
 
-void registerMap() { mrpt::rtti::registerClass(CLASS_ID(CSemanticOctoMap)); }
-
 /** Below IMPLEMENTS_SERIALIZABLE, which gives the class its name while statics are initialized;
  * MRPT_INITIALIZER may come before that. */
-[[maybe_unused]] const bool kIsRegistered = (registerMap(), true);
+[[maybe_unused]] const bool kIsRegistered =
+    (mrpt::rtti::registerClass(CLASS_ID(CSemanticOctoMap)), true);
 
 }  // namespace
-
-void registerMaps() {
-  labeled_cloud::registerObservations();
-  registerMap();
-}
 
 uint8_t CSemanticOctoMap::serializeGetVersion() const { return 2; }
 

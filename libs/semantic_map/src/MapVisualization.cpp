@@ -32,36 +32,6 @@ mrpt::img::TColor colorOf(const SemanticOcTree& tree, const SemanticOcTree::Node
   return mrptColor(semantic_types::colorOf(tree.query(node).likeliestClass, tree.classes()));
 }
 
-/** Fills a set of boxes with the cells that the options ask for. */
-class VoxelSets {
- public:
-  VoxelSets(const SemanticOcTree& tree, const TRenderingOptions& options)
-      : m_tree(tree), m_options(options) {
-    m_voxels->resizeVoxelSets(2);
-    m_voxels->setVisualizationMode(COctoMapVoxels::FIXED);
-    m_voxels->enableLights(true);
-    m_voxels->enableCubeTransparency(true);
-  }
-
-  void add(const SemanticOcTree::Node& node, const mrpt::math::TPoint3Df& center, double size) {
-    if (center.z < m_options.minHeight || center.z > m_options.maxHeight) return;
-    const bool occupied = m_tree.isNodeOccupied(node);
-    if (!occupied && !m_options.free) return;
-    m_voxels->push_back_Voxel(occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED
-                                       : mrpt_compat::drawing::VOXEL_SET_FREESPACE,
-                              {center, size,
-                               occupied ? colorOf(m_tree, node, m_options.coloring)
-                                        : mrpt::img::TColor(160, 200, 230, 25)});
-  }
-
-  COctoMapVoxels::Ptr take() { return m_voxels; }
-
- private:
-  const SemanticOcTree& m_tree;
-  TRenderingOptions m_options;
-  COctoMapVoxels::Ptr m_voxels = COctoMapVoxels::Create();
-};
-
 }  // namespace
 
 mrpt::math::TBoundingBoxf CSemanticOctoMap::boundingBox() const {
@@ -88,10 +58,23 @@ void CSemanticOctoMap::getVisualizationInto(mrpt_compat::drawing::CSetOfObjects&
 
 void CSemanticOctoMap::draw(const SemanticOcTree& tree,
                             mrpt_compat::drawing::CSetOfObjects& o) const {
-  VoxelSets sets(tree, renderingOptions);
-  for (auto it = tree.begin_leafs(), end = tree.end_leafs(); it != end; ++it)
-    sets.add(*it, {float(it.getX()), float(it.getY()), float(it.getZ())}, it.getSize());
-  const auto voxels = sets.take();
+  const TRenderingOptions& options = renderingOptions;
+  const auto voxels = COctoMapVoxels::Create();
+  voxels->resizeVoxelSets(2);
+  voxels->setVisualizationMode(COctoMapVoxels::FIXED);
+  voxels->enableLights(true);
+  voxels->enableCubeTransparency(true);
+  for (auto it = tree.begin_leafs(), end = tree.end_leafs(); it != end; ++it) {
+    const bool occupied = tree.isNodeOccupied(*it);
+    if (it.getZ() < options.minHeight || it.getZ() > options.maxHeight) continue;
+    if (!occupied && !options.free) continue;
+    const mrpt::math::TPoint3Df center(float(it.getX()), float(it.getY()), float(it.getZ()));
+    const mrpt::img::TColor color =
+        occupied ? colorOf(tree, *it, options.coloring) : mrpt::img::TColor(160, 200, 230, 25);
+    voxels->push_back_Voxel(occupied ? mrpt_compat::drawing::VOXEL_SET_OCCUPIED
+                                     : mrpt_compat::drawing::VOXEL_SET_FREESPACE,
+                            {center, it.getSize(), color});
+  }
   const auto box = knownBox();
   voxels->setBoundingBox(mrpt::math::TPoint3D(box.min), mrpt::math::TPoint3D(box.max));
   o.insert(voxels);

@@ -244,9 +244,4 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   mutable std::shared_ptr<mrpt::maps::CSimplePointsMap> m_centers, m_centersFromAbove;
 };
 
-/** Registers the map and labeled_cloud's observation with MRPT's factories. Called when the library
- * is loaded; call it where the linker may drop a library of which nothing else is used. May be
- * called any number of times. */
-void registerMaps();
-
 }  // namespace semantic_map
