@@ -4,9 +4,7 @@
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/Words.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <deque>
 #include <optional>
 
@@ -65,30 +63,15 @@ void load(const Cli& cli, const fs::path& file, std::deque<StoredMap>& maps) {
   notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";
 }
 
-/** What to say of voxels that differ, with the command that makes them alike if there is one. */
-std::string voxelsOf(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
-                     const SemanticOcTree& b) {
-  using strict_files::textOf;
-  const bool isFirstFiner = a.getResolution() < b.getResolution();
-  const fs::path& finer = isFirstFiner ? first : second;
-  const double fine = std::min(a.getResolution(), b.getResolution());
-  const double coarse = std::max(a.getResolution(), b.getResolution());
-  std::string text =
-      "voxels: " + textOf(a.getResolution()) + " m and " + textOf(b.getResolution()) + " m";
-  const double doublings = std::log2(coarse / fine);
-  if (std::abs(doublings - std::round(doublings)) < 1e-6)
-    text += "; semantic-map-edit " + finer.string() + " --resolution " + textOf(coarse) +
-            " -o coarse.semantic makes them alike";
-  return text;
-}
-
 void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
                 const SemanticOcTree& b) {
   const auto differ = [&](const std::string& what) {
     throw std::runtime_error(first.string() + " and " + second.string() + " have different " +
                              what);
   };
-  if (a.getResolution() != b.getResolution()) differ(voxelsOf(first, a, second, b));
+  using strict_files::textOf;
+  if (a.getResolution() != b.getResolution())
+    differ("voxels: " + textOf(a.getResolution()) + " m and " + textOf(b.getResolution()) + " m");
   if (a.classes() != b.classes()) differ("classes");
   if (!(a.filterParameters() == b.filterParameters())) differ("filter parameters");
 }

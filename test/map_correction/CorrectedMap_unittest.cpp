@@ -7,7 +7,6 @@
 
 #include "FollowedTree.h"
 #include "KeyframeScans.h"
-#include "TemporaryFolder.h"
 #include "Voxels.h"
 
 using namespace keyframe_scans;
@@ -96,15 +95,7 @@ class RandomWork {
   std::vector<KeyframeId> m_present;
 };
 
-class CorrectedMap : public testing::TestWithParam<Variant> {
- protected:
-  const TemporaryFolder m_folder;
-
-  std::unique_ptr<KeyframeMap> keyframesOf(SemanticOcTree& map) const {
-    return GetParam().onDisk ? std::make_unique<KeyframeMap>(map, m_folder.path())
-                             : std::make_unique<KeyframeMap>(map);
-  }
-};
+class CorrectedMap : public testing::TestWithParam<Variant> {};
 
 }  // namespace
 
@@ -112,8 +103,8 @@ TEST_P(CorrectedMap, isWhatMappingFromScratchMakesAfterAnyInsertionsMovesAndRemo
   const Variant& variant = GetParam();
   for (unsigned seed = 1; seed <= 6; ++seed) {
     SemanticOcTree map = emptyMap(variant);
-    const auto keyframes = keyframesOf(map);
-    RandomWork work(seed, variant, *keyframes);
+    KeyframeMap keyframes(map);
+    RandomWork work(seed, variant, keyframes);
     for (int i = 0; i < 14; ++i) {
       work.step();
       map.age(0.1);
@@ -122,7 +113,7 @@ TEST_P(CorrectedMap, isWhatMappingFromScratchMakesAfterAnyInsertionsMovesAndRemo
       ASSERT_TRUE(map == expected) << variant.name << ", seed " << seed << ", step " << i;
       EXPECT_EQ(map.size(), expected.size());
       EXPECT_EQ(map.memoryUsage(), expected.memoryUsage());
-      EXPECT_EQ(keyframes->numScans(), work.scans.all.size());
+      EXPECT_EQ(keyframes.numScans(), work.scans.all.size());
     }
   }
 }
@@ -130,11 +121,11 @@ TEST_P(CorrectedMap, isWhatMappingFromScratchMakesAfterAnyInsertionsMovesAndRemo
 TEST_P(CorrectedMap, tellsItsChangesAsAMapThatGrowsDoes) {
   const Variant& variant = GetParam();
   SemanticOcTree map = emptyMap(variant);
-  const auto keyframes = keyframesOf(map);
+  KeyframeMap keyframes(map);
   MapFollower follower = map.follow();
   follower.skipTiles();
   FollowedTree told(map), often(map);
-  RandomWork work(7, variant, *keyframes);
+  RandomWork work(7, variant, keyframes);
   for (int i = 0; i < 40; ++i) {
     const SemanticOcTree before = map;
     work.step();
@@ -151,13 +142,12 @@ TEST_P(CorrectedMap, tellsItsChangesAsAMapThatGrowsDoes) {
 INSTANTIATE_TEST_SUITE_P(
     Variants, CorrectedMap,
     testing::Values(Variant{"hard"}, Variant{"soft", true}, Variant{"unpruned", false, false},
-                    Variant{"onDisk", false, true, true}, Variant{"threads", true, true, true, 2},
-                    Variant{"chargedFrame", false, true, false, 1,
-                            AbstractionOptions::Frame::Charged},
-                    Variant{"endVoxels", false, true, false, 1, AbstractionOptions::Frame::Free,
+                    Variant{"threads", true, true, 2},
+                    Variant{"chargedFrame", false, true, 1, AbstractionOptions::Frame::Charged},
+                    Variant{"endVoxels", false, true, 1, AbstractionOptions::Frame::Free,
                             InsertionOptions::Rays::EndVoxels},
-                    Variant{"ages", true, true, true, 2, AbstractionOptions::Frame::Free,
+                    Variant{"ages", true, true, 2, AbstractionOptions::Frame::Free,
                             InsertionOptions::Rays::All, true},
-                    Variant{"coarse", false, true, false, 1, AbstractionOptions::Frame::Free,
+                    Variant{"coarse", false, true, 1, AbstractionOptions::Frame::Free,
                             InsertionOptions::Rays::All, true, 0.15, 1.6}),
     [](const auto& variant) { return variant.param.name; });

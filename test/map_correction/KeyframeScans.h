@@ -15,7 +15,7 @@ using namespace semantic_octree;
 /** How a map of keyframes is made. */
 struct Variant {
   const char* name;
-  bool softLabels = false, pruning = true, onDisk = false;
+  bool softLabels = false, pruning = true;
   int threads = 1;
   AbstractionOptions::Frame frame = AbstractionOptions::Frame::Free;
   InsertionOptions::Rays rays = InsertionOptions::Rays::All;

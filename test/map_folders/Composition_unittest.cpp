@@ -191,7 +191,7 @@ TEST_P(Composition, withADraft) {
   map = emptyMapOf(GetParam());
   MapFolderOptions options = tight();
   options.draft = folder / "draft";
-  tiles = std::make_unique<MapFolder>(map, folder / "map", MapFolder::Access::Draft, options);
+  tiles = std::make_unique<MapFolder>(map, folder / "map", kRead, options);
   if (GetParam().upkeep) setAbstraction(map, someAbstraction());
   insertIntoBoth(35);
   whole.age(5);

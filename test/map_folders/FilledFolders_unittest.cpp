@@ -53,13 +53,6 @@ TEST_F(FilledFolders, copiesAreTheSameToTheLastBit) {
   expectFilled(notPruned, [&](SemanticOcTree& copy) { copyTo(copy, notPruned); });
 }
 
-TEST_F(FilledFolders, sumsAreThoseInMemory) {
-  const auto maps = someMaps();
-  const std::vector<const SemanticOcTree*> both = {&maps[0], &maps[1]};
-  for (const Limits limits : {Limits::Apply, Limits::Keep})
-    expectFilled(merged(both, limits), [&](SemanticOcTree& sum) { mergeTo(sum, both, limits); });
-}
-
 TEST_F(FilledFolders, compressedTreesAreThoseInMemory) {
   for (const auto frame : {AbstractionOptions::Frame::Free, AbstractionOptions::Frame::Charged}) {
     const TemporaryFolder fresh;

@@ -52,8 +52,6 @@ void expectSameAnswers(const SemanticOcTree& map, const SemanticOcTree& expected
   }
 }
 
-constexpr auto kDraft = MapFolder::Access::Draft;
-
 MapFolderOptions draftIn(const std::filesystem::path& place) {
   MapFolderOptions options = tight();
   options.draft = place;
@@ -338,20 +336,13 @@ TEST(MapDrafts, goOnWhileAnotherProcessSavesTheFolder) {
   const auto scans = someScans(4, 9);
   saveScans(folder / "map", firstOf(scans, 3));
   SemanticOcTree map = emptyMap(), whole = emptyMap();
-  const MapFolder draft(map, folder / "map", kDraft, draftIn(folder / "draft"));
+  const MapFolder draft(map, folder / "map", kRead, draftIn(folder / "draft"));
   insertAll(map, {scans[3], scans[4]});
   saveScans(folder / "map", {scans.begin() + 5, scans.end()});  // adds to it
   insertAll(map, {scans[3], scans[4]});
   insertAll(whole, firstOf(scans, 5));
   insertAll(whole, {scans[3], scans[4]});
   EXPECT_TRUE(map == whole);
-}
-
-TEST(MapDrafts, needAPlace) {
-  const TemporaryFolder folder;
-  saveScans(folder / "map", someScans(5, 2));
-  SemanticOcTree map = emptyMap();
-  EXPECT_THROW(MapFolder(map, folder / "map", kDraft, tight()), std::invalid_argument);
 }
 
 TEST(MapDrafts, ofMapsInOneFileAreTheMap) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -123,8 +124,7 @@ struct KeyframeMap::Content {
     StoredVoxels voxels;
   };
 
-  Content(SemanticOcTree& tree, const std::optional<std::filesystem::path>& folder)
-      : map(tree), storage(folder) {
+  Content(SemanticOcTree& tree, const std::filesystem::path& folder) : map(tree), storage(folder) {
     if (!map.empty()) throw std::invalid_argument("keyframes: their map is not empty at first");
   }
 
@@ -138,9 +138,8 @@ struct KeyframeMap::Content {
     scan.set(cloud, T * s.T_keyframe_sensor, map.getResolution(), MapAccess::filter(map),
              s.options);
   }
-  StoredVoxels keep(PackedScan voxels) {
-    const TileBox box(tilesOf(voxels));
-    return {storage.keep(voxels.release()), box};
+  StoredVoxels keep(const PackedScan& voxels) {
+    return {storage.keep(voxels.bytes()), TileBox(tilesOf(voxels))};
   }
   /** Calls f with a scan for it to fill; what fails half-filled must not leak into the next. */
   template <typename F>
@@ -169,8 +168,7 @@ struct KeyframeMap::Content {
 /** One correction, until it is done. */
 class KeyframeMap::Correction {
  public:
-  explicit Correction(Content& content)
-      : m(content), m_voxels(content.scans.size()), m_isMerged(content.scans.size()) {}
+  explicit Correction(Content& content) : m(content), m_voxels(content.scans.size()) {}
   /** Drops what was prepared, if it does not come to pass. */
   ~Correction() {
     for (auto& voxels : m_voxels)
@@ -184,11 +182,10 @@ class KeyframeMap::Correction {
     const LabeledCloud cloud = unpackCloud(m.storage.load(s.cloud));
     m.inBuffers([&](Scan& traced) {
       m.trace(s, cloud, T_map_keyframe, traced);
-      PackedScan after = packed(traced);
+      const PackedScan after = packed(traced);
       addTiles(differingTiles(before, after));
-      m_voxels[scan] = m.keep(std::move(after));
+      m_voxels[scan] = m.keep(after);
     });
-    ++m_report.scansTraced;
   }
   /** The scan is to be as if it had seen nothing. */
   void remove(std::size_t scan) {
@@ -197,8 +194,7 @@ class KeyframeMap::Correction {
   }
 
   /** Puts it into the map. */
-  CorrectionReport apply() {
-    m_report.tiles = m_tiles.size();
+  void apply() {
     if (m_tiles.empty()) return accept();
     const std::vector<TileCodes> parts = partsOf(m_tiles);
     SemanticOcTree anew = madeAnew(parts.front());
@@ -208,9 +204,7 @@ class KeyframeMap::Correction {
         TileReplacement(target, MapAccess::store(anew)).replace(part);
       }
     });
-    m_report.scansMerged =
-        static_cast<std::size_t>(std::count(m_isMerged.begin(), m_isMerged.end(), true));
-    return accept();
+    accept();
   }
 
  private:
@@ -256,24 +250,18 @@ class KeyframeMap::Correction {
     m.inBuffers([&](Scan& scan) {
       unpack(voxels, tiles, m.map.numClasses(), options, scan);
       MapAccess::merge(anew, scan, options.threads);
-      if (scan.hasVoxels()) m_isMerged[i] = true;
     });
   }
 
-  CorrectionReport accept() {
+  void accept() {
     for (std::size_t i = 0; i < m_voxels.size(); ++i)
       if (m_voxels[i]) std::swap(m.scans[i].voxels, *m_voxels[i]);
-    return m_report;
   }
 
   Content& m;
   std::vector<std::optional<Content::StoredVoxels>> m_voxels;  ///< of scans that change
-  std::vector<bool> m_isMerged;                                ///< scans, once more
   TileCodes m_tiles;                                           ///< to be made anew
-  CorrectionReport m_report;
 };
-
-KeyframeMap::KeyframeMap(SemanticOcTree& map) : m(std::make_unique<Content>(map, std::nullopt)) {}
 
 KeyframeMap::KeyframeMap(SemanticOcTree& map, const std::filesystem::path& folder)
     : m(std::make_unique<Content>(map, folder)) {}
@@ -311,7 +299,7 @@ InsertionReport KeyframeMap::insert(const LabeledCloud& cloud,
   return report;
 }
 
-CorrectionReport KeyframeMap::move(const std::vector<KeyframePose>& poses) {
+void KeyframeMap::move(const std::vector<KeyframePose>& poses) {
   std::map<KeyframeId, Eigen::Isometry3d> newPoses;
   for (const KeyframePose& p : poses)
     if (m->T_map_keyframe(p.keyframe).matrix() != p.T_map_keyframe.matrix())
@@ -322,18 +310,17 @@ CorrectionReport KeyframeMap::move(const std::vector<KeyframePose>& poses) {
   for (std::size_t i = 0; i < m->scans.size(); ++i)
     if (const auto at = newPoses.find(m->scans[i].keyframe); at != newPoses.end())
       correction.move(i, at->second);
-  const CorrectionReport report = correction.apply();
+  correction.apply();
   for (const auto& [id, T_map_keyframe] : newPoses) m->keyframes[id] = T_map_keyframe;
-  return report;
 }
 
-CorrectionReport KeyframeMap::remove(const std::set<KeyframeId>& keyframes) {
+void KeyframeMap::remove(const std::set<KeyframeId>& keyframes) {
   for (const KeyframeId id : keyframes) m->T_map_keyframe(id);
   Correction correction(*m);
   const auto isGone = [&](const auto& s) { return keyframes.count(s.keyframe) > 0; };
   for (std::size_t i = 0; i < m->scans.size(); ++i)
     if (isGone(m->scans[i])) correction.remove(i);
-  const CorrectionReport report = correction.apply();
+  correction.apply();
   for (const KeyframeId id : keyframes) m->keyframes.erase(id);
   for (auto& s : m->scans)
     if (isGone(s)) {
@@ -341,27 +328,12 @@ CorrectionReport KeyframeMap::remove(const std::set<KeyframeId>& keyframes) {
       m->storage.drop(s.voxels.packed);
     }
   m->scans.erase(std::remove_if(m->scans.begin(), m->scans.end(), isGone), m->scans.end());
-  return report;
 }
-
-std::size_t KeyframeMap::numKeyframes() const { return m->next; }
 
 std::size_t KeyframeMap::numScans() const { return m->scans.size(); }
 
 const Eigen::Isometry3d& KeyframeMap::pose(KeyframeId keyframe) const {
   return m->T_map_keyframe(keyframe);
 }
-
-auto KeyframeMap::bytes() const -> Bytes {
-  Bytes bytes;
-  for (const auto& s : m->scans)
-    (m->storage.isInMemory() ? bytes.inMemory : bytes.onDisk) +=
-        s.cloud.size + s.voxels.packed.size;
-  bytes.inMemory += m->scans.size() * sizeof(Content::StoredScan) +
-                    m->keyframes.size() * sizeof(*m->keyframes.begin());
-  return bytes;
-}
-
-const SemanticOcTree& KeyframeMap::map() const { return m->map; }
 
 }  // namespace semantic_octree

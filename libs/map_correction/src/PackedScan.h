@@ -4,7 +4,6 @@
 #include <strict_files/OutputFiles.h>
 
 #include <cstring>
-#include <optional>
 
 namespace semantic_octree {
 
@@ -51,8 +50,7 @@ class PackedScan {
     const char* at = &m_bytes[1];
     return takeFrom<LabelReliability>(at);
   }
-  /** Nothing is left. */
-  Bytes release() { return std::move(m_bytes); }
+  const Bytes& bytes() const { return m_bytes; }
 
   /** To be filled at the end of bytes, then endTile(). */
   Bytes& beginTile(std::uint64_t code) {
@@ -121,46 +119,29 @@ void forEachTileIn(const PackedScan& scan, const TileCodes& wanted, const F& f) 
   }
 }
 
-/** Keeps bytes in memory or in a file. */
+/** Keeps bytes in a file. */
 class ScanStorage {
  public:
-  /** What was kept; moved, not copied. */
   struct Piece {
-    Bytes bytes;  ///< in memory
     std::uint64_t place = 0;
     std::size_t size = 0;
   };
 
-  /** \param folder of the file; none: in memory */
-  explicit ScanStorage(const std::optional<std::filesystem::path>& folder) {
-    if (folder) m_file.emplace(*folder);
-  }
+  explicit ScanStorage(const std::filesystem::path& folder) : m_file(folder) {}
 
-  Piece keep(Bytes bytes) {
-    Piece piece{{}, 0, bytes.size()};
-    if (m_file) {
-      piece.place = m_file->append(bytes.data(), bytes.size());
-    } else {
-      bytes.shrink_to_fit();
-      piece.bytes = std::move(bytes);
-    }
-    return piece;
+  Piece keep(const Bytes& bytes) {
+    return {m_file.append(bytes.data(), bytes.size()), bytes.size()};
   }
   Bytes load(const Piece& piece) const {
-    if (!m_file) return piece.bytes;
     Bytes bytes(piece.size);
-    m_file->read(piece.place, bytes.data(), bytes.size());
+    m_file.read(piece.place, bytes.data(), bytes.size());
     return bytes;
   }
   /** The piece is not needed any more. */
-  void drop(Piece& piece) noexcept {
-    if (m_file) m_file->discard(piece.place, piece.size);
-    piece = {};
-  }
-  bool isInMemory() const { return !m_file; }
+  void drop(const Piece& piece) noexcept { m_file.discard(piece.place, piece.size); }
 
  private:
-  std::optional<strict_files::ScratchFile> m_file;
+  strict_files::ScratchFile m_file;
 };
 
 /** All of a cloud, bit for bit. */

@@ -88,8 +88,6 @@ MapFolder::Tiles::Tiles(SemanticOcTree& map, fs::path folder, Access access,
   options.validate();
   if (!map.empty() || store().tiles())
     throw std::invalid_argument("a map for a folder of tiles has to be empty, and in no other one");
-  if (access == Access::Draft && options.draft.empty())
-    throw std::invalid_argument("a draft of a folder of tiles needs a place for what changes");
   m_index = open(options);
   constexpr double kAll = 1e18;  // bytes
   m_budget = static_cast<std::size_t>(std::min(options.memory * 1e6, kAll));
@@ -132,7 +130,6 @@ void MapFolder::Tiles::save() {
 }
 
 TileIndex MapFolder::Tiles::open(const MapFolderOptions& options) {
-  if (m_access == Access::Draft) m_unsaved.emplace(options.draft);
   if (saves()) {
     m_unsaved.emplace(m_folder);
     m_writer = FileLock::tryTo(m_folder / TileIndex::kWriterLock, FileLock::Kind::Exclusive);
@@ -140,6 +137,7 @@ TileIndex MapFolder::Tiles::open(const MapFolderOptions& options) {
     m_unsaved->takeAlong(TileIndex::kWriterLock);
   } else {
     m_reader.emplace(m_folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
+    if (!options.draft.empty()) m_unsaved.emplace(options.draft);
   }
   const bool wasSaved = isAt(m_folder);
   TileIndex index;
@@ -273,26 +271,13 @@ SemanticOcTree beginningOf(const fs::path& path) {
 
 }  // namespace
 
-StoredMap::StoredMap(const fs::path& path, double memory, decltype(MapFolderOptions::wanted) wanted)
-    : m_tree(beginningOf(path)) {
-  MapFolderOptions options;
-  options.memory = memory;
-  options.wanted = std::move(wanted);
-  open(path, MapFolder::Access::Read, options);
-}
-
 StoredMap::StoredMap(const fs::path& path, const MapFolderOptions& options)
     : m_tree(beginningOf(path)) {
-  open(path, MapFolder::Access::Draft, options);
-}
-
-void StoredMap::open(const fs::path& path, MapFolder::Access access,
-                     const MapFolderOptions& options) {
   if (!MapFolder::isAt(path)) {
     m_bytesOnDisk = fs::file_size(path);
     return;
   }
-  m_folder = std::make_unique<MapFolder>(m_tree, path, access, options);
+  m_folder = std::make_unique<MapFolder>(m_tree, path, MapFolder::Access::Read, options);
   m_bytesOnDisk = m_folder->contents().bytesOnDisk;
 }
 

@@ -19,13 +19,6 @@ struct KeyframePose {
   Eigen::Isometry3d T_map_keyframe;
 };
 
-/** What it took to correct a map. */
-struct CorrectionReport {
-  std::size_t scansTraced = 0;  ///< whose beams were followed once more
-  std::size_t scansMerged = 0;  ///< of which parts were merged once more
-  std::size_t tiles = 0;        ///< of 8 x 8 x 8 voxels that were made anew
-};
-
 /** A map that can be corrected: it remembers the scans that it is made of, keyframe by keyframe. So
  * keyframes can be moved, as a closed loop asks for, and removed.
  *
@@ -41,13 +34,12 @@ struct CorrectionReport {
  * all scans saw in them. */
 class KeyframeMap {
  public:
-  /** Scans are kept in memory.
-   * \param map empty; must outlive this, and be changed through this alone (except for its
-   * abstraction) \throw std::invalid_argument it is not empty. */
-  explicit KeyframeMap(SemanticOcTree& map);
-  /** Scans are kept in a file in a folder, which goes when this goes.
+  /** \param map empty; must outlive this, and be changed through this alone (except for its
+   * abstraction) \param folder of a file with the scans, which goes when this goes
+   * \throw std::invalid_argument the map is not empty
    * \throw std::runtime_error naming the folder: it cannot be written to. */
-  KeyframeMap(SemanticOcTree& map, const std::filesystem::path& folder);
+  explicit KeyframeMap(SemanticOcTree& map, const std::filesystem::path& folder =
+                                                std::filesystem::temp_directory_path());
   ~KeyframeMap();
   KeyframeMap(const KeyframeMap&) = delete;
   KeyframeMap& operator=(const KeyframeMap&) = delete;
@@ -65,22 +57,14 @@ class KeyframeMap {
    * not if memory ran out at the end or a tile's file failed (MapFolder): see
    * SemanticOcTree::isBroken().
    * \throw std::out_of_range no such keyframe, or a sensor would be outside of the map. */
-  CorrectionReport move(const std::vector<KeyframePose>& poses);
+  void move(const std::vector<KeyframePose>& poses);
   /** Takes keyframes' scans out of the map, all at once, as if they had never been.
    * \throw std::out_of_range no such keyframe. */
-  CorrectionReport remove(const std::set<KeyframeId>& keyframes);
+  void remove(const std::set<KeyframeId>& keyframes);
 
-  /** Keyframes that began, also those that were removed. */
-  std::size_t numKeyframes() const;
   std::size_t numScans() const;
   /** \throw std::out_of_range no such keyframe. */
   const Eigen::Isometry3d& pose(KeyframeId keyframe) const;
-  /** Bytes of the scans: points, voxels. */
-  struct Bytes {
-    std::size_t inMemory = 0, onDisk = 0;
-  };
-  Bytes bytes() const;
-  const SemanticOcTree& map() const;
 
  private:
   class Correction;

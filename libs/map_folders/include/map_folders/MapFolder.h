@@ -22,8 +22,9 @@ struct MapFolderOptions {
   /** For a folder that is opened to be read: only tiles for whose cube (meters, map frame) this
    * answers true; the others' are unknown space. None: all tiles. */
   std::function<bool(const Eigen::AlignedBox3d& cube)> wanted = {};
-  /** For a folder that is opened as a draft: a folder where tiles that changed go when memory is
-   * short. It is created, and goes with the MapFolder. */
+  /** For a folder that is opened to be read: a folder where tiles that changed go when memory is
+   * short. It is created, and goes with the MapFolder. With it the map may change; it is not saved,
+   * and the folder stays as it is. */
   std::filesystem::path draft = {};
 
   void describe(strict_files::OptionList& list);
@@ -62,8 +63,7 @@ class MapFolder {
   enum class Access {
     Read,
     Write,
-    Replace,  ///< to write, but the map begins empty: with the first save() all that was there goes
-    Draft     ///< to change the map, which is not saved: the folder stays as it is
+    Replace  ///< to write, but the map begins empty: with the first save() all that was there goes
   };
 
   /** The file that makes a folder one. */
@@ -76,8 +76,7 @@ class MapFolder {
   /** Makes a map what the folder says, also its clock. For writing, the folder may be new.
    * \param map empty, like that of the folder, but for half-lives: those of its classes hold; must
    * outlive this
-   * \throw std::invalid_argument the map is not empty, or is in a folder; bad options; a draft
-   * without a place
+   * \throw std::invalid_argument the map is not empty, or is in a folder; bad options
    * \throw std::runtime_error naming the folder or file: it cannot be read or written, is of
    * another resolution, classes or parameters, or another process writes into it. */
   MapFolder(SemanticOcTree& map, const std::filesystem::path& folder, Access access,
@@ -88,7 +87,7 @@ class MapFolder {
   MapFolder& operator=(const MapFolder&) = delete;
 
   /** Brings what changed to the disk. If this fails, the map and the folder are what they were.
-   * \throw std::runtime_error naming the file; std::logic_error opened to be read, or a draft. */
+   * \throw std::runtime_error naming the file; std::logic_error opened to be read. */
   void save();
   /** \param available bytes of memory; without, those that the system has left
    * \throw std::runtime_error naming the bytes that the map needs as a whole, if these are more */
@@ -123,13 +122,12 @@ class MapFolder {
  * from one thread. Others have loadMap(). */
 class StoredMap {
  public:
-  /** \param memory, wanted of a folder's map: see MapFolderOptions \throw std::runtime_error as
-   * loadTree() */
-  explicit StoredMap(const std::filesystem::path& path, double memory = MapFolderOptions().memory,
-                     decltype(MapFolderOptions::wanted) wanted = {});
-  /** One that changes, while what it is read from stays as it is. \param options of a folder, with
-   * a place for a draft \throw std::runtime_error as loadTree() */
-  StoredMap(const std::filesystem::path& path, const MapFolderOptions& options);
+  /** \param options of a folder that is read \throw std::runtime_error as loadTree() */
+  explicit StoredMap(const std::filesystem::path& path, const MapFolderOptions& options = {});
+  /** \param memory, wanted see MapFolderOptions */
+  StoredMap(const std::filesystem::path& path, double memory,
+            decltype(MapFolderOptions::wanted) wanted = {})
+      : StoredMap(path, MapFolderOptions{memory, MapFolderOptions().tileSize, std::move(wanted)}) {}
   /** One that is in memory. */
   explicit StoredMap(SemanticOcTree tree) : m_tree(std::move(tree)) {}
   /** An empty one, to be filled (MapOperations.h) and saved in place of what the folder has.
@@ -145,9 +143,6 @@ class StoredMap {
   std::uint64_t bytesOnDisk() const { return m_bytesOnDisk; }
 
  private:
-  void open(const std::filesystem::path& path, MapFolder::Access access,
-            const MapFolderOptions& options);
-
   SemanticOcTree m_tree;
   std::unique_ptr<MapFolder> m_folder;
   std::uint64_t m_bytesOnDisk = 0;

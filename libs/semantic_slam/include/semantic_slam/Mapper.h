@@ -24,7 +24,7 @@ struct MapperOptions {
    * a robot that waits does not become ever surer of what may go away. */
   int insertEvery = 1;
   /** With `localize`: a folder for the scans that a closed loop may move, and for what loops are
-   * searched in; empty: in memory. */
+   * searched in; empty: the former are temporary files, the latter in memory. */
   std::filesystem::path scans;
   /** With `localize`: from so many keyframes on, those go with what they saw that others outnumber
    * (Slam::outnumbered()). So what is kept grows with the ground, not with the way of a robot that
