@@ -11,8 +11,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "EdgeChanges.h"
-
 using namespace colored_graph;
 
 namespace {
@@ -96,47 +94,6 @@ TEST(ColoredGraph, equalsSetsAndMapsAfterAnyChanges) {
     for (int changes = *rc::gen::inRange(1, 120); changes > 0; --changes)
       changeAtRandom(graph, reference);
     expectSame(graph, reference);
-  }));
-}
-
-TEST(ColoredGraph, keepsEveryKindOfContent) {
-  struct Content {
-    EdgeProfile profile;
-    Tolls tolls;
-  };
-  const auto same = [](const Edge& edge, const Content& expected) {
-    Length length = 0;
-    RC_ASSERT(edge.profile.size() == expected.profile.size());
-    for (std::size_t i = 0; i < edge.profile.size(); ++i) {
-      RC_ASSERT(edge.profile[i].classId == expected.profile[i].classId);
-      RC_ASSERT(edge.profile[i].length == expected.profile[i].length);
-      length += edge.profile[i].length;
-    }
-    RC_ASSERT(edge.length == length);
-    RC_ASSERT(edge.tolls.toA == expected.tolls.toA);
-    RC_ASSERT(edge.tolls.toB == expected.tolls.toB);
-  };
-  EXPECT_TRUE(rc::check([&] {
-    ColoredGraph graph(3);
-    std::vector<Content> contents(4);
-    for (int i = 0; i < 5; ++i) graph.addVertex(0);
-    for (int i = 0; i < 4; ++i) contents[graph.addEdge(i, i + 1, {{0, 1}})].profile = {{0, 1}};
-    for (int changes = *rc::gen::inRange(1, 40); changes > 0; --changes) {
-      const EdgeId e = *rc::gen::inRange<EdgeId>(0, 4);
-      Content& content = contents[e];
-      if (*rc::gen::arbitrary<bool>()) {
-        content.profile.resize(*rc::gen::element(1, 1, 2, 3));
-        for (Stretch& s : content.profile)
-          s = {*rc::gen::inRange<GraphClass>(0, 3),
-               *rc::gen::element<Length>(0, 7, 4294967295, 4294967296, Length{1} << 60)};
-        graph.setProfile(e, content.profile);
-      } else {
-        content.tolls = {*rc::gen::element<Length>(0, 5, kClosed),
-                         *rc::gen::element<Length>(0, 5, kClosed)};
-        setTolls(graph, e, content.tolls);
-      }
-      for (EdgeId each = 0; each < 4; ++each) same(graph.edge(each), contents[each]);
-    }
   }));
 }
 

@@ -35,7 +35,8 @@ TEST_F(OrderFile, isStrictAboutClassesAndKeys) {
   EXPECT_TRUE(contains(orderError("best_to_worst: [road, lava]"), "no class 'lava'"));
   EXPECT_TRUE(contains(orderError("best_to_worst:\n- road\n- lava"), "order.yaml:3"));
   EXPECT_TRUE(contains(orderError("best_to_worst: [road]\nworse: [grass]"), "unknown key 'worse'"));
-  EXPECT_TRUE(contains(orderError("best_to_worst: [road, [grass, road]]"), "'road' is named twice"));
+  EXPECT_TRUE(
+      contains(orderError("best_to_worst: [road, [grass, road]]"), "'road' is named twice"));
   EXPECT_TRUE(contains(orderError("best_to_worst: []"), "best_to_worst"));
   EXPECT_TRUE(contains(orderError("best_to_worst: [road"), "order.yaml"));
   EXPECT_TRUE(contains(orderError("{}"), "'best_to_worst' is missing"));

@@ -219,43 +219,6 @@ TEST_F(RelaxedSearch, findsAWayWhereThereIsOneForSingleColumns) {
   EXPECT_GT(ways, 10);
 }
 
-/** Between posts the way of longer steps may lead where the vehicle cannot turn. */
-TEST_F(RelaxedSearch, aPathThatOnlyTheWayBySingleColumnsLeadsToIsFound) {
-  options.shorten = true;
-  options.vehicle.footprint = Footprint::rectangle(-0.25, 0.55, 0.6);
-  options.vehicle.wheelTrack = 0.5;
-  start = {-20.5, 0, 0}, goal = {20.5, 0, 0};
-  for (const unsigned seed : {10u, 35u}) {
-    world = PaintedWorld();
-    world.floor(-22, 22, -8, 8, PaintedWorld::Road);
-    std::mt19937 random(seed);
-    const auto unit = [&] { return (random() >> 8) * 0x1p-24; };
-    for (int i = 0; i < 150; ++i) {
-      const double x = -19 + 38 * unit(), y = -7.8 + 15.6 * unit();
-      world.box(x, x + 0.3, y, y + 0.3, 0, 1, PaintedWorld::Wall);
-    }
-    expectDrivable(plan());
-  }
-}
-
-TEST_F(RelaxedSearch, bySingleColumnsAloneIsNotTakenTwiceWhereThereIsNoPath) {
-  world.floor(-10, 1.6, 0, 1.6, PaintedWorld::Road);  // around a bend that is too sharp
-  world.floor(0, 1.6, 0, 10, PaintedWorld::Road);
-  start = {-8, 0.7, 0};
-  goal = {0.7, 8, M_PI / 2};
-  options.shorten = true;
-  options.vehicle.turningRadius = 6;
-  options.vehicle.reverseWeight = std::numeric_limits<double>::infinity();
-  for (const auto& [width, ways] : {std::pair(0.2, 1), {0.6, 2}}) {
-    options.vehicle.footprint = Footprint::rectangle(-0.25, 0.55, width);
-    ASSERT_FALSE(guide().empty());
-    const StageTimes times = plan().times;
-    EXPECT_EQ(ways, std::count_if(times.begin(), times.end(),
-                                  [](const auto& stage) { return stage.first == "way"; }))
-        << width;
-  }
-}
-
 TEST_F(RelaxedSearch, keepsTheFootprintOffWalls) {
   world.floor(-15, 15, -15, 15, PaintedWorld::Grass);
   world.box(-1, -0.6, -15, 4, 0, 2, PaintedWorld::Wall);

@@ -2,7 +2,6 @@
 // is made for each.
 #include <semantic_abstraction/Abstraction.h>
 
-#include <algorithm>
 #include <random>
 
 #include "PlannerFixture.h"
@@ -95,28 +94,6 @@ TEST_F(RepeatedPlansTest, whatIsForgottenIsFoundOutAgain) {
   EXPECT_FALSE(p.hasRoadmap());
   const PlanResult again = p.plan(start, goal);
   EXPECT_EQ(numbersOf(again), numbersOf(first));
-}
-
-TEST_F(RepeatedPlansTest, theSamePosesComeAgainUnlessTheyBelongToTheTask) {
-  paintCorner();
-  options.roadmap.buffer = 6;
-  for (const auto& [kind, again] : {std::pair(GraphKind::Compressed, true),
-                                    {GraphKind::Leaves, true},
-                                    {GraphKind::HaltonDrivable, false}}) {
-    options.roadmap.kind = kind;
-    SemanticPlanner p = planner();
-    p.plan(start, goal);
-    const auto before = posesOf(p.roadmap());
-    p.plan(start, {5, 10, 0});
-    const auto now = posesOf(p.roadmap());
-    EXPECT_EQ(now.size(), options.roadmap.vertices + 2);
-    const auto shared = std::count_if(now.begin(), now.end(),
-                                      [&](const auto& pose) { return before.count(pose) > 0; });
-    if (again)
-      EXPECT_GT(shared, now.size() / 3) << nameOf(kind);
-    else
-      EXPECT_LT(shared, 10);
-  }
 }
 
 class SlicedPlansTest : public PlannerTest {

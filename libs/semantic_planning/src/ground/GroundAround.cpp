@@ -9,9 +9,20 @@
 #include <utility>
 
 #include "GroundTiles.h"
+#include "vehicle/CurveWalk.h"
 
 namespace semantic_planning {
 
+namespace {
+
+/** Ground near a vehicle. */
+struct GroundSample {
+  double x, y;  ///< in the vehicle's frame, meters
+  double z;     ///< meters
+  ClassId classId;
+};
+
+/** The footprint and the clearance around it, with some room, in the vehicle's frame. */
 Eigen::AlignedBox2d boxAround(const VehicleOptions& vehicle, double voxelSize) {
   Eigen::AlignedBox2d box;
   for (const Disc& d : vehicle.footprint.coveringDiscs()) {
@@ -22,7 +33,23 @@ Eigen::AlignedBox2d boxAround(const VehicleOptions& vehicle, double voxelSize) {
   return box;
 }
 
-namespace {
+/** f(number of the ray, place in the vehicle's frame, column) along rays from a circle around a box
+ * on, in all directions, as long as f says so. */
+template <class F>
+void forRaysAround(const Ground& ground, const Eigen::AlignedBox2d& box, const Placement& placed,
+                   F f) {
+  constexpr int kRays = 64;
+  constexpr double kFar = 10;  // m: what is farther tells little
+  for (int i = 0; i < kRays; ++i) {
+    const double to = i * 2 * M_PI / kRays;
+    bool goesOn = true;
+    for (double r = box.diagonal().norm() / 2; goesOn && r < kFar; r += ground.voxelSize() / 2) {
+      const double x = box.center().x() + r * std::cos(to), y = box.center().y() + r * std::sin(to);
+      const auto [px, py] = placed(x, y);
+      goesOn = f(i, Eigen::Vector2d(x, y), ground.columnAt(px, py));
+    }
+  }
+}
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -36,8 +63,8 @@ double medianHeight(const std::vector<GroundSample>& samples) {
   return median(std::move(heights));
 }
 
-}  // namespace
-
+/** Leaves out what is higher or lower than a vehicle on the ground would see: cars' roofs, ghosts.
+ * \param z of the ground below the vehicle; none: the samples' median */
 void keepLevel(std::vector<GroundSample>& samples, const VehicleOptions& vehicle,
                std::optional<double> z) {
   if (samples.empty()) return;
@@ -56,6 +83,7 @@ bool areAllAround(const std::vector<GroundSample>& samples, const Eigen::Vector2
   return std::count(quadrants.begin(), quadrants.end(), true) == 4;
 }
 
+/** Coefficients of the plane z = p0 + p1 x + p2 y of least squares. */
 Eigen::Vector3d planeThrough(const std::vector<GroundSample>& samples) {
   Eigen::MatrixX3d A(samples.size(), 3);
   Eigen::VectorXd b(samples.size());
@@ -64,6 +92,57 @@ Eigen::Vector3d planeThrough(const std::vector<GroundSample>& samples) {
     b[Eigen::Index(i)] = samples[i].z;
   }
   return A.colPivHouseholderQr().solve(b);
+}
+
+/** The nearest ground in all directions, where the order allows it: z in the map's frame. */
+std::vector<GroundSample> groundAround(const Ground& ground, const Eigen::AlignedBox2d& box,
+                                       const Placement& placed) {
+  std::vector<GroundSample> samples;
+  forRaysAround(ground, box, placed, [&](int, const Eigen::Vector2d& at, Column c) {
+    const SurfaceRange surfaces = ground.surfaces(c);
+    if (surfaces.empty()) return true;
+    const Surface& s = *surfaces.first;
+    if (ground.layers().shape().ranks[s.classId] != colored_graph::kForbidden)
+      samples.push_back({at.x(), at.y(), ground.centerOf(s.z), s.classId});
+    return false;
+  });
+  return samples;
+}
+
+ClassId mostFrequentClass(const std::vector<GroundSample>& samples) {
+  std::map<ClassId, int> counts;
+  for (const GroundSample& s : samples) ++counts[s.classId];
+  return std::max_element(counts.begin(), counts.end(),
+                          [](const auto& l, const auto& r) { return l.second < r.second; })
+      ->first;
+}
+
+}  // namespace
+
+std::vector<GroundPoint> groundBelow(const Ground& ground, const VehicleOptions& vehicle,
+                                     const mrpt::math::TPose2D& pose, std::optional<double> z) {
+  const Placement placed(pose);
+  const Eigen::AlignedBox2d box = boxAround(vehicle, ground.voxelSize());
+  std::vector<GroundSample> samples = groundAround(ground, box, placed);
+  keepLevel(samples, vehicle, z);
+  if (!areAllAround(samples, box.center())) return {};
+  const Eigen::Vector3d plane = planeThrough(samples);
+  Surface surface;
+  surface.classId = mostFrequentClass(samples);
+  surface.filled = true;
+  std::map<Column, Surface> below;
+  const double step = ground.voxelSize() / 2;
+  for (double x = box.min().x(); x <= box.max().x(); x += step)
+    for (double y = box.min().y(); y <= box.max().y(); y += step) {
+      const auto [px, py] = placed(x, y);
+      const Column c = ground.columnAt(px, py);
+      if (!ground.surfaces(c).empty()) continue;
+      surface.z = static_cast<std::uint16_t>(ground.keyOf(plane.dot(Eigen::Vector3d(1, x, y))));
+      below.emplace(c, surface);
+    }
+  std::vector<GroundPoint> points;
+  for (const auto& [column, s] : below) points.push_back({column, s});
+  return points;
 }
 
 namespace {

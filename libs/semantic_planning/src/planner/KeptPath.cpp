@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "PathImprovement.h"
-#include "roadmap/TileMarks.h"
 
 namespace semantic_planning {
 
@@ -17,11 +16,7 @@ void KeptPath::keep(const PlanResult& plan, double least) {
 void KeptPath::groundChanged(const std::vector<Column>& tiles) {
   if (tiles.empty()) return;
   m_changed = true;
-  const TileMarks marks(m_checker.ground(), tiles);
-  const bool isNear = std::any_of(m_plan.path.begin(), m_plan.path.end(), [&](const PathPoint& p) {
-    return marks.anyIn({p.x, p.y, m_checker.reach()});
-  });
-  if (isNear && !lookAgain()) drop();
+  if (!lookAgain()) drop();
 }
 
 /** \return whether it is free. */
@@ -54,6 +49,11 @@ std::optional<PlanResult> KeptPath::restFrom(const GroundPose& pose) const {
   rest.path.assign(on, m_plan.path.end());
   PathPoint& first = rest.path.front();
   first.x = pose.pose.x, first.y = pose.pose.y, first.heading = pose.pose.phi;
+  double begin = first.arcLength;
+  if (const PathPoint* next = rest.path.size() > 1 ? &rest.path[1] : nullptr)
+    begin = next->arcLength - std::hypot(next->x - first.x, next->y - first.y);
+  first.arcLength = begin;
+  for (PathPoint& p : rest.path) p.arcLength -= begin;
   setLengths(rest, m_checker, m_prices);
   return rest;
 }

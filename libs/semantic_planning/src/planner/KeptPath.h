@@ -51,7 +51,7 @@ class KeptPath {
   void keep(const PlanResult& plan, double least);
   void drop() { m_plan = {}; }
   bool isKept() const { return m_plan.found(); }
-  /** Looks again at the path if it comes near one of these tiles. */
+  /** Looks again at the path, if any did. */
   void groundChanged(const std::vector<Column>& tiles);
 
   /** What is left of the path from a pose on it; none: it is not on it, or the path is blocked. */

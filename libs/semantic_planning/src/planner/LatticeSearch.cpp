@@ -7,7 +7,6 @@
 #include <deque>
 #include <limits>
 #include <queue>
-#include <utility>
 
 namespace semantic_planning {
 
@@ -109,14 +108,13 @@ class LatticeSearch {
     constexpr double kSlack = 1e-3;  // m: lengths are rounded
     Slices::count(25);
     m_budget.left = colored_graph::toMeters(to.cost - way.bound) + kSlack;
-    auto profile = m_checker.profile(*way.curve, way.from->pose.z, to.pose.z, &m_budget);
+    const auto profile = m_checker.profile(*way.curve, way.from->pose.z, to.pose.z, &m_budget);
     if (!profile) return;
     const Length cost = way.bound + m_prices.of(*profile);
     if (cost >= to.cost) return;
     to.cost = cost;
     to.before = way.from;
-    to.last =
-        &m_legs.emplace_back(Leg{*way.curve, way.from->pose.z, to.pose.z, std::move(*profile)});
+    to.last = &m_legs.emplace_back(Leg{*way.curve, way.from->pose.z});
   }
 
   const CollisionChecker& m_checker;

@@ -14,8 +14,7 @@ using Station = std::vector<GroundPose>;
 /** A curve of a path. */
 struct Leg {
   ReedsSheppCurve curve;
-  int from, to;  ///< keys of the surfaces at its ends
-  colored_graph::EdgeProfile profile;
+  int from;  ///< key of the surface where it begins
 };
 
 /** The path of least price from the first of some stations to the last, by dynamic programming: the

@@ -16,44 +16,31 @@ using OrderId = colored_graph::GraphClass;
 
 namespace {
 
-class RankReader {
- public:
-  RankReader(const StrictYaml& yaml, const ClassTable& classes)
-      : m_yaml(yaml), m_classes(classes) {}
-
-  /** One class, or a list of them. */
-  std::vector<OrderId> read(const YAML::Node& node) {
-    if (node.IsScalar()) return {classNamed(node)};
-    m_yaml.checkList(node, "best_to_worst");
-    std::vector<OrderId> rank;
-    for (const YAML::Node& name : node) rank.push_back(classNamed(name));
-    return rank;
-  }
-
- private:
-  OrderId classNamed(const YAML::Node& node) {
-    const std::string name = m_yaml.text(node, "a class");
-    const auto id = m_classes.find(name);
-    if (!id && name != kUnknownGround) m_yaml.fail(node, "the map has no class '" + name + "'");
-    if (!m_named.insert(name).second) m_yaml.fail(node, "'" + name + "' is named twice");
-    return id.value_or(semantic_types::kNoClass);
-  }
-
-  const StrictYaml& m_yaml;
-  const ClassTable& m_classes;
-  std::set<std::string> m_named;
-};
-
 double readRate(const StrictYaml& yaml, const YAML::Node& node) {
   if (node.IsScalar() && node.Scalar() == "inf") return std::numeric_limits<double>::infinity();
   return yaml.number(node, "rates");
 }
 
 ClassOrder readOrder(const StrictYaml& yaml, const ClassTable& classes, const YAML::Node& list) {
+  std::set<std::string> named;
+  const auto classNamed = [&](const YAML::Node& node) {
+    const std::string name = yaml.text(node, "a class");
+    const auto id = classes.find(name);
+    if (!id && name != kUnknownGround) yaml.fail(node, "the map has no class '" + name + "'");
+    if (!named.insert(name).second) yaml.fail(node, "'" + name + "' is named twice");
+    return OrderId(id.value_or(semantic_types::kNoClass));
+  };
   yaml.checkList(list, "best_to_worst");
   std::vector<std::vector<OrderId>> ranks;
-  RankReader reader(yaml, classes);
-  for (const YAML::Node& rank : list) ranks.push_back(reader.read(rank));
+  for (const YAML::Node& rank : list) {
+    std::vector<OrderId>& ids = ranks.emplace_back();
+    if (rank.IsScalar()) {
+      ids.push_back(classNamed(rank));
+      continue;
+    }
+    yaml.checkList(rank, "best_to_worst");
+    for (const YAML::Node& name : rank) ids.push_back(classNamed(name));
+  }
   try {
     return ClassOrder(classes.size() + 1, ranks);
   } catch (const std::invalid_argument& e) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "LatticeSearch.h"
 #include "PathSmoothing.h"
@@ -41,14 +42,6 @@ std::vector<PathPoint> tracePath(const PathResult& path, const Roadmap& roadmap,
   return points;
 }
 
-/** Lengths by class, in units. */
-void setLengths(const std::vector<colored_graph::Length>& lengths, PlanResult& result) {
-  for (const colored_graph::Length length : lengths) {
-    result.lengthPerClass.push_back(colored_graph::toMeters(length));
-    result.length += result.lengthPerClass.back();
-  }
-}
-
 }  // namespace
 
 void appendCurve(const std::vector<PathPoint>& curve, std::vector<PathPoint>& path) {
@@ -68,7 +61,10 @@ void describePath(const PathResult& path, const Roadmap& roadmap, const Collisio
     return;
   }
   result.cost = path.cost;
-  setLengths(path.lengthPerClass, result);
+  for (const colored_graph::Length length : path.lengthPerClass) {
+    result.lengthPerClass.push_back(colored_graph::toMeters(length));
+    result.length += result.lengthPerClass.back();
+  }
   for (const auto v : path.vertices) result.vertices.push_back(roadmap.pose(v).pose);
   result.path = tracePath(path, roadmap, checker);
 }
@@ -133,8 +129,8 @@ class Improvement {
       : m_checker(checker), m_prices(prices) {}
 
   PlanResult run(const std::vector<PathPoint>& way, bool isDrivable) {
-    if (isDrivable) offer(legsAlong(way, m_checker, m_prices));
-    improve(way);
+    if (isDrivable && !way.empty()) offer(way);
+    if (way.size() > 2) improve(way);
     return m_result;
   }
 
@@ -235,36 +231,27 @@ class Improvement {
   bool turnBetter() {
     bool isBetter = false;
     for (const auto better : {withBetterBegin, withBetterEnd})
-      if (const auto path = better(m_result.path, m_checker, m_prices))
-        isBetter |= offer(legsAlong(*path, m_checker, m_prices));
+      if (const auto path = better(m_result.path, m_checker, m_prices)) isBetter |= offer(*path);
     return isBetter;
   }
 
   void smooth() { offer(smoothed(m_result.path, m_checker, m_prices)); }
 
-  /** \return whether that costs less than what there is. */
   bool offer(const std::vector<Leg>& legs) {
-    if (legs.empty()) return false;
-    PlanResult offered = withLegs(legs);
+    std::vector<PathPoint> path;
+    for (const Leg& leg : legs) appendCurve(m_checker.trace(leg.curve, leg.from), path);
+    return !path.empty() && offer(path);
+  }
+
+  /** \return whether that costs less than what there is. */
+  bool offer(const std::vector<PathPoint>& path) {
+    PlanResult offered;
+    offered.status = PlanStatus::Found;
+    offered.path = path;
+    setLengths(offered, m_checker, m_prices);
     if (m_result.found() && m_result.price <= offered.price) return false;
     m_result = std::move(offered);
     return true;
-  }
-
-  PlanResult withLegs(const std::vector<Leg>& legs) const {
-    PlanResult after;
-    after.status = PlanStatus::Found;
-    after.vertices = {legs.front().curve.from()};
-    std::vector<colored_graph::Length> lengths(m_checker.order().classes());
-    for (const Leg& leg : legs) {
-      appendCurve(m_checker.trace(leg.curve, leg.from), after.path);
-      after.vertices.push_back(leg.curve.at(leg.curve.length()).pose);
-      for (const auto& stretch : leg.profile) lengths[stretch.classId] += stretch.length;
-    }
-    setLengths(lengths, after);
-    after.cost = costOf(after, m_checker);
-    after.price = priceOf(after, m_checker, m_prices);
-    return after;
   }
 
   const CollisionChecker& m_checker;
@@ -284,18 +271,18 @@ double priceOf(const PlanResult& plan, const CollisionChecker& checker, const Cl
 }
 
 void setLengths(PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices) {
-  std::vector<PathPoint>& path = plan.path;
+  const std::vector<PathPoint>& path = plan.path;
   plan.lengthPerClass.assign(static_cast<std::size_t>(checker.order().classes()), 0);
   plan.vertices = {{path.front().x, path.front().y, path.front().heading}};
-  path.front().arcLength = 0;
-  ClassId id = path.front().classId;
+  std::optional<ClassId> id;
+  const auto count = [&](ClassId at, double length) {
+    if (checker.order().rank(at) != colored_graph::kForbidden) id = at;
+    if (id) plan.lengthPerClass[*id] += length;
+  };
   for (std::size_t i = 1; i < path.size(); ++i) {
-    const PathPoint& before = path[i - 1];
-    PathPoint& p = path[i];
-    const double length = std::hypot(p.x - before.x, p.y - before.y);
-    p.arcLength = before.arcLength + length;
-    if (checker.order().rank(p.classId) != colored_graph::kForbidden) id = p.classId;
-    plan.lengthPerClass[id] += length;
+    const PathPoint& p = path[i];
+    const double half = (p.arcLength - path[i - 1].arcLength) / 2;
+    count(path[i - 1].classId, half), count(p.classId, half);
     const bool goesOn = i + 1 < path.size() && path[i + 1].forward == p.forward &&
                         !MotionCost::steers(p.curvature, path[i + 1].curvature);
     if (!goesOn) plan.vertices.emplace_back(p.x, p.y, p.heading);
@@ -307,13 +294,7 @@ void setLengths(PlanResult& plan, const CollisionChecker& checker, const ClassPr
 
 PlanResult pathBeside(const std::vector<PathPoint>& way, bool isDrivable,
                       const CollisionChecker& checker, const ClassPrices& prices) {
-  if (way.size() > 2) return Improvement(checker, prices).run(way, isDrivable);
-  PlanResult result;
-  if (!isDrivable || way.empty()) return result;
-  result.status = PlanStatus::Found;
-  result.path = way;
-  setLengths(result, checker, prices);
-  return result;
+  return Improvement(checker, prices).run(way, isDrivable);
 }
 
 }  // namespace semantic_planning

@@ -20,8 +20,9 @@ void describePath(const colored_graph::PathResult& path, const Roadmap& roadmap,
 /** What a path costs: its motion cost, and for each length in a class its rate; meters. */
 double priceOf(const PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices);
 
-/** Fills in what follows from a path's points: arc lengths, lengths in classes, cost, price and
- * where its curves meet. */
+/** Fills in what follows from a path's points: lengths in classes, cost, price and where its curves
+ * meet. What is between two points counts by halves for the classes at both. There it may touch
+ * what is forbidden: that counts for the class before. */
 void setLengths(PlanResult& plan, const CollisionChecker& checker, const ClassPrices& prices);
 
 /** The path of least price that is found beside a way, or not found. \param isDrivable whether the

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -93,9 +94,6 @@ std::optional<TangentArc> tangentArc(const TPose2D& from, const Arc& into) {
   return found;
 }
 
-using colored_graph::EdgeProfile;
-using mrpt::math::TPose2D;
-
 namespace {
 
 /** Where a new arc leaves a part: meters after the part's end. */
@@ -106,8 +104,8 @@ constexpr std::size_t kMostReplaced = 12;  // parts by one
 struct Part {
   Arc arc;  ///< backwards: its length is negative
   int z;    ///< key of the surface where it begins
-  int number;
-  EdgeProfile profile;
+  int number = 0;
+  double ofClasses = 0;  ///< what it costs for its classes, meters
 
   CurveState state() const { return {arc.length > 0, arc.curvature}; }
 };
@@ -139,14 +137,8 @@ class Smoothing {
   std::vector<Leg> run() {
     while (m_looks > 0 && improve()) {
     }
-    return legs();
-  }
-
-  std::vector<Leg> legs() const {
     std::vector<Leg> legs;
-    for (std::size_t i = 0; i < m_parts.size(); ++i)
-      legs.push_back({curveOf(m_parts[i].arc), m_parts[i].z,
-                      i + 1 < m_parts.size() ? m_parts[i + 1].z : m_end, m_parts[i].profile});
+    for (const Part& part : m_parts) legs.push_back({curveOf(part.arc), part.z});
     return legs;
   }
 
@@ -162,34 +154,21 @@ class Smoothing {
       ++to;
     const double length = path[to].arcLength - begin.arcLength;
     const TPose2D pose(begin.x, begin.y, begin.heading);
-    Part part{{pose, first.curvature, first.forward ? length : -length},
-              m_checker.ground().keyOf(begin.z),
-              m_numbers++,
-              {}};
-    if (!evaluate(part, m_checker.ground().keyOf(path[to].z))) part.profile = known(path, from, to);
-    m_parts.push_back(part);
+    m_parts.push_back({{pose, first.curvature, first.forward ? length : -length},
+                       m_checker.ground().keyOf(begin.z),
+                       m_numbers++,
+                       ofClasses(path, from, to)});
     return to;
   }
 
-  /** Classes of a part of the given path. It was looked at as a part of longer curves, at other
-   * places: between these it may touch what is forbidden, which is left out. */
-  EdgeProfile known(const std::vector<PathPoint>& path, std::size_t from, std::size_t to) const {
-    std::vector<double> lengths(m_perMeter.size());
-    const auto isAllowed = [this](const PathPoint& p) {
-      return std::isfinite(m_perMeter[p.classId]);
-    };
-    const auto first =
-        std::find_if(path.begin() + static_cast<std::ptrdiff_t>(from), path.end(), isAllowed);
-    ClassId id = first == path.end() ? semantic_types::kNoClass : first->classId;
-    for (std::size_t i = from + 1; i <= to; ++i) {
-      if (isAllowed(path[i])) id = path[i].classId;
-      lengths[id] += path[i].arcLength - path[i - 1].arcLength;
-    }
-    EdgeProfile profile;
-    for (std::size_t i = 0; i < lengths.size(); ++i)
-      if (lengths[i] > 0)
-        profile.push_back({static_cast<ClassId>(i), colored_graph::lengthDown(lengths[i])});
-    return profile;
+  /** As setLengths(), but without what is forbidden. */
+  double ofClasses(const std::vector<PathPoint>& path, std::size_t from, std::size_t to) const {
+    double price = 0;
+    for (std::size_t i = from + 1; i <= to; ++i)
+      for (const std::size_t at : {i - 1, i})
+        if (const double rate = m_perMeter[path[at].classId]; std::isfinite(rate))
+          price += rate * (path[i].arcLength - path[i - 1].arcLength) / 2;
+    return price;
   }
 
   ReedsSheppCurve curveOf(const Arc& arc) const {
@@ -201,9 +180,11 @@ class Smoothing {
 
   /** \param end key of the surface at its end */
   bool evaluate(Part& part, int end) {
-    auto profile = m_checker.profile(curveOf(part.arc), part.z, end, &m_budget);
-    if (profile) part.profile = std::move(*profile);
-    return profile.has_value();
+    const auto profile = m_checker.profile(curveOf(part.arc), part.z, end, &m_budget);
+    if (!profile) return false;
+    for (const auto& stretch : *profile)
+      part.ofClasses += m_perMeter[stretch.classId] * colored_graph::toMeters(stretch.length);
+    return true;
   }
 
   bool improve() {
@@ -238,7 +219,7 @@ class Smoothing {
     std::vector<Part> parts;
     const auto add = [&](const Arc& arc) {
       constexpr double kNothing = 1e-6;
-      if (arc.length > kNothing) parts.push_back({arc, 0, 0, {}});
+      if (arc.length > kNothing) parts.push_back({arc, 0});
     };
     Arc before = m_parts[r.before].arc;
     const Arc after = m_parts[r.after].arc;
@@ -297,13 +278,9 @@ class Smoothing {
     return r.after + 1 < m_parts.size() ? m_parts[r.after + 1].z : m_end;
   }
 
-  /** What some parts cost for their classes, meters. */
-  double ofClasses(const std::vector<Part>& parts) const {
-    double price = 0;
-    for (const Part& part : parts)
-      for (const auto& stretch : part.profile)
-        price += m_perMeter[stretch.classId] * colored_graph::toMeters(stretch.length);
-    return price;
+  static double ofClasses(const std::vector<Part>& parts) {
+    return std::accumulate(parts.begin(), parts.end(), 0.0,
+                           [](double sum, const Part& part) { return sum + part.ofClasses; });
   }
 
   bool evaluate(const Replacement& r, std::vector<Part>& parts) {
@@ -338,11 +315,6 @@ class Smoothing {
 std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const CollisionChecker& checker,
                           const ClassPrices& prices) {
   return Smoothing(path, checker, prices).run();
-}
-
-std::vector<Leg> legsAlong(const std::vector<PathPoint>& path, const CollisionChecker& checker,
-                           const ClassPrices& prices) {
-  return Smoothing(path, checker, prices).legs();
 }
 
 }  // namespace semantic_planning

@@ -34,8 +34,4 @@ std::optional<TangentArc> tangentArc(const mrpt::math::TPose2D& from, const Arc&
 std::vector<Leg> smoothed(const std::vector<PathPoint>& path, const CollisionChecker& checker,
                           const ClassPrices& prices);
 
-/** The stretches of constant curvature that a path is made of. */
-std::vector<Leg> legsAlong(const std::vector<PathPoint>& path, const CollisionChecker& checker,
-                           const ClassPrices& prices);
-
 }  // namespace semantic_planning

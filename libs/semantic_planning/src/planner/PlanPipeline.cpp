@@ -25,26 +25,23 @@ PlanResult cancelledPlan() {
 /** From the price field to a path:
  * 1. the way of least price of a vehicle that turns on the spot,
  * 2. beside it the best path that the vehicle can drive, which is smoothed,
- * 3. if there is none, and that way has longer steps: beside the one column by column,
- * 4. if there is none yet, or one that costs much more than that way: from pose to pose, improved
+ * 3. if there is none, or one that costs much more than that way: from pose to pose, improved
  *    alike,
- * 5. if none is good yet, and classes come before length: beside the roadmap's path. The way that
+ * 4. if none is good yet, and classes come before length: beside the roadmap's path. The way that
  *    turns on the spot may slip over a strip of a voxel, and no price leads around it. */
 PlanResult PlannerCore::pathBy(const RelaxedPath& relaxed, const Task& task, StageClock& clock) {
   const CollisionChecker& checker = task.checker;
   PlanResult result = pathBeside(relaxed.path, false, checker, m_prices);
   clock.end("beside");
   const auto isGood = [&] { return result.found() && result.price <= mostOf(relaxed); };
-  const auto offer = [&](const std::vector<PathPoint>& way, bool isDrivable = true) {
-    PlanResult other = pathBeside(way, isDrivable, checker, m_prices);
+  const auto offer = [&](const std::vector<PathPoint>& way) {
+    PlanResult other = pathBeside(way, true, checker, m_prices);
     if (!result.found() || (other.found() && other.price < result.price)) result = std::move(other);
     clock.end("way");
   };
   if (isGood()) return result;
   if (isCancelled()) return cancelledPlan();
-  if (!result.found() && !relaxed.path.empty() && relaxed.stride > 1)
-    offer(searchRelaxed(checker, task.start, task.goal, false, true).path, false);
-  if (!isGood()) offer(wayBetween(task.start, task.goal, checker, m_prices));
+  offer(wayBetween(task.start, task.goal, checker, m_prices));
   if (m_options.strict && !isGood()) offer(searchRoadmap(clock).path);
   return result.found() ? result : noPath(relaxed, task);
 }

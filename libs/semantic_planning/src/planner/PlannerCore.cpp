@@ -13,6 +13,7 @@
 #include "PathImprovement.h"
 #include "Refusal.h"
 #include "ground/ColumnGrid.h"
+#include "ground/GroundAround.h"
 
 namespace semantic_planning {
 
@@ -35,6 +36,16 @@ PlanStatus atGoal(PlanStatus start) {
                                              : PlanStatus::GoalForbidden;
 }
 
+/** "(25.1, 3.9), 0.4 m from the goal" */
+std::string textOf(const mrpt::math::TPoint2D& place, const mrpt::math::TPose2D& from,
+                   const char* what) {
+  std::ostringstream text;
+  const strict_files::ClassicNumbers classic(text);
+  text << std::fixed << std::setprecision(1) << '(' << place.x << ", " << place.y << "), "
+       << std::hypot(place.x - from.x, place.y - from.y) << " m from the " << what;
+  return text.str();
+}
+
 /** "the goal (25, 4) is blocked: (25.1, 3.9), 0.4 m from the goal: ground not known" */
 std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPose2D& pose,
                      const Refusal& refusal) {
@@ -45,11 +56,7 @@ std::string reasonOf(const char* what, PlanStatus status, const mrpt::math::TPos
          << (status == PlanStatus::StartOffGround ? "off the ground: "
              : status == PlanStatus::StartBlocked ? "blocked: "
                                                   : "on forbidden ground: ");
-  if (status != PlanStatus::StartOffGround)
-    reason << std::fixed << std::setprecision(1) << '(' << refusal.place.x << ", "
-           << refusal.place.y << "), "
-           << std::hypot(refusal.place.x - pose.x, refusal.place.y - pose.y) << " m from the "
-           << what << ": ";
+  if (status != PlanStatus::StartOffGround) reason << textOf(refusal.place, pose, what) << ": ";
   reason << refusal.what;
   return reason.str();
 }
@@ -233,15 +240,10 @@ PlanResult PlannerCore::noPath(const RelaxedPath& relaxed, const Task& task) con
   const bool overForbidden = !searchRelaxed(task.checker, task.start, task.goal, true).path.empty();
   if (overForbidden) result.status = PlanStatus::OnlyForbidden;
   result.obstacle = relaxed.nearest;
-  const mrpt::math::TPoint2D& place = *relaxed.nearest;
-  const mrpt::math::TPose2D& goal = task.goal.pose;
-  std::ostringstream text;
-  const strict_files::ClassicNumbers classic(text);
-  text << describe(overForbidden ? colored_graph::SearchStatus::OnlyForbidden
-                                 : colored_graph::SearchStatus::NotConnected)
-       << std::fixed << std::setprecision(1) << "; what can be reached ends at (" << place.x << ", "
-       << place.y << "), " << std::hypot(place.x - goal.x, place.y - goal.y) << " m from the goal";
-  result.reason = text.str();
+  result.reason = std::string(describe(overForbidden ? colored_graph::SearchStatus::OnlyForbidden
+                                                     : colored_graph::SearchStatus::NotConnected)) +
+                  "; what can be reached ends at " +
+                  textOf(*relaxed.nearest, task.goal.pose, "goal");
   return result;
 }
 

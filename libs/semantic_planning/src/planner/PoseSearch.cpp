@@ -3,7 +3,6 @@
 #include <semantic_planning/planner/Slices.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <queue>
@@ -196,22 +195,11 @@ class PoseSearch {
                   lengthDown(price.of(m_task.isReversed ? curve.reversed() : curve));
     if (target.state) cost += lengthDown(price.ofChange(endOf(curve), *target.state));
     const int z = node(from).pose.z;
-    if (cost + target.rest >= m_most || !mayFit(curve, z)) return;
+    if (cost + target.rest >= m_most) return;
     const auto whole = costOver(curve, z, target.pose.z, cost, target.rest);
     if (!whole) return;
     m_most = *whole + target.rest;
     m_joint = Joint{from, curve, static_cast<std::size_t>(&target - m_targets.data())};
-  }
-
-  /** Few places tell most curves that do not fit, sooner than profiles do: near its end first, for
-   * goals are where there is little room. \param z key of the surface at its begin */
-  bool mayFit(const ReedsSheppCurve& curve, int z) const {
-    constexpr std::array<double, 4> kShares = {0.9, 0.5, 0.25, 0.75};
-    return std::all_of(kShares.begin(), kShares.end(), [&](double share) {
-      const auto placed =
-          m_checker.place(curve.at(share * curve.length()).pose, m_checker.ground().centerOf(z));
-      return placed && m_checker.fit(*placed) == Fit::Free;
-    });
   }
 
   ReedsSheppCurve curveBetween(const GroundPose& from, const GroundPose& to) const {

@@ -1,14 +1,8 @@
 #include "Refusal.h"
 
-#include <strict_files/TextFile.h>
-
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <map>
-#include <sstream>
 
-#include "ground/GroundAround.h"
 #include "ground/GroundTiles.h"
 #include "vehicle/CurveWalk.h"
 
@@ -25,18 +19,8 @@ std::string forbidden(const Ground& ground, ClassId id) {
   return "ground of " + named(ground, id) + ", which the order forbids";
 }
 
-/** What stands in the way. A class that the vehicle may drive on does not stand up: the label was
- * wrong, or somebody who passed has left it in the map. \param voxels above the ground */
-std::string standing(const CollisionChecker& checker, ClassId id, int voxels) {
-  const std::string name = named(checker.ground(), id);
-  if (id == semantic_types::kNoClass || checker.order().rank(id) == colored_graph::kForbidden)
-    return "an obstacle (" + name + ")";
-  std::ostringstream text;
-  const strict_files::ClassicNumbers classic(text);
-  text << "something " << std::fixed << std::setprecision(1)
-       << std::max(1, voxels) * checker.ground().voxelSize() << " m high, labeled " << name
-       << ": a wrong label, or what somebody left who passed";
-  return text.str();
+std::string standing(const Ground& ground, ClassId id) {
+  return "an obstacle (" + named(ground, id) + ")";
 }
 
 /** A surface at this height, in a column or one next to it; or null. */
@@ -48,12 +32,11 @@ const Surface* surfaceAround(const Ground& ground, Column c, int z) {
 }
 
 /** \param z of the ground that the vehicle stands upon */
-std::string whatIsAt(const CollisionChecker& checker, const Obstacle& obstacle, int z) {
-  const Ground& ground = checker.ground();
+std::string whatIsAt(const Ground& ground, const Obstacle& obstacle, int z) {
   const int step = ground.step();
   if (obstacle.z > z + step)
     if (const Surface* s = surfaceAround(ground, obstacle.column, obstacle.z))
-      return standing(checker, s->classId, s->z - z);
+      return standing(ground, s->classId);
   if (const Surface* s = ground.near(obstacle.column, obstacle.z, step))
     return s->drivable ? forbidden(ground, s->classId) : "ground too steep";
   const ColumnTile tile =
@@ -61,7 +44,7 @@ std::string whatIsAt(const CollisionChecker& checker, const Obstacle& obstacle, 
   const int column = indexInTile(obstacle.column), height = ground.layers().shape().height;
   for (const Run* run = tile.runs.begin(column); run != tile.runs.end(column); ++run)
     if (run->top > obstacle.z + step && run->bottom <= obstacle.z + height)
-      return standing(checker, run->topClass, run->top - z);
+      return standing(ground, run->topClass);
   return tile.isOverDrop(column, obstacle.z, obstacle.z, step, height) ? "a drop"
                                                                        : "ground not known";
 }
@@ -84,7 +67,7 @@ Refusal blocking(const CollisionChecker& checker, const GroundPose& pose) {
     nearest = std::min(nearest, distance);
   }
   return {{ground.centerOf(obstacle.column.x), ground.centerOf(obstacle.column.y)},
-          whatIsAt(checker, obstacle, pose.z)};
+          whatIsAt(ground, obstacle, pose.z)};
 }
 
 /** The first wheel that is over forbidden ground. */
@@ -111,59 +94,6 @@ Refusal refusalOf(const CollisionChecker& checker, PlanStatus status,
   if (status == PlanStatus::StartBlocked) return blocking(checker, *placed);
   const bool isSteep = !ground.surfaces(ground.columnAt(pose.x, pose.y)).empty();
   return {{pose.x, pose.y}, isSteep ? "ground too steep" : "ground not known"};
-}
-
-namespace {
-
-/** The nearest ground in all directions, where the order allows it: z in the map's frame. */
-std::vector<GroundSample> groundAround(const Ground& ground, const Eigen::AlignedBox2d& box,
-                                       const Placement& placed) {
-  std::vector<GroundSample> samples;
-  forRaysAround(ground, box, placed, [&](int, const Eigen::Vector2d& at, Column c) {
-    const SurfaceRange surfaces = ground.surfaces(c);
-    if (surfaces.empty()) return true;
-    const Surface& s = *surfaces.first;
-    if (ground.layers().shape().ranks[s.classId] != colored_graph::kForbidden)
-      samples.push_back({at.x(), at.y(), ground.centerOf(s.z), s.classId});
-    return false;
-  });
-  return samples;
-}
-
-ClassId mostFrequentClass(const std::vector<GroundSample>& samples) {
-  std::map<ClassId, int> counts;
-  for (const GroundSample& s : samples) ++counts[s.classId];
-  return std::max_element(counts.begin(), counts.end(),
-                          [](const auto& l, const auto& r) { return l.second < r.second; })
-      ->first;
-}
-
-}  // namespace
-
-std::vector<GroundPoint> groundBelow(const Ground& ground, const VehicleOptions& vehicle,
-                                     const mrpt::math::TPose2D& pose, std::optional<double> z) {
-  const Placement placed(pose);
-  const Eigen::AlignedBox2d box = boxAround(vehicle, ground.voxelSize());
-  std::vector<GroundSample> samples = groundAround(ground, box, placed);
-  keepLevel(samples, vehicle, z);
-  if (!areAllAround(samples, box.center())) return {};
-  const Eigen::Vector3d plane = planeThrough(samples);
-  Surface surface;
-  surface.classId = mostFrequentClass(samples);
-  surface.filled = true;
-  std::map<Column, Surface> below;
-  const double step = ground.voxelSize() / 2;
-  for (double x = box.min().x(); x <= box.max().x(); x += step)
-    for (double y = box.min().y(); y <= box.max().y(); y += step) {
-      const auto [px, py] = placed(x, y);
-      const Column c = ground.columnAt(px, py);
-      if (!ground.surfaces(c).empty()) continue;
-      surface.z = static_cast<std::uint16_t>(ground.keyOf(plane.dot(Eigen::Vector3d(1, x, y))));
-      below.emplace(c, surface);
-    }
-  std::vector<GroundPoint> points;
-  for (const auto& [column, s] : below) points.push_back({column, s});
-  return points;
 }
 
 }  // namespace semantic_planning

@@ -46,7 +46,8 @@ class RelaxedSearch {
     if (!from.surface || !m_goal.surface) return;
     reach(from, {0, {}});
     while (!m_queue.empty()) {
-      const auto [estimate, cell] = m_queue.pop();
+      const auto [estimate, cell] = m_queue.top();
+      m_queue.pop();
       if (cell == m_goal.cell) return traceTo(cell, guide);
       const Place place = m_field.placeOf(cell);
       const Cost cost = m_field.label(cell).cost;
@@ -119,7 +120,7 @@ class RelaxedSearch {
 
   void reach(const Place& place, const Label& reached) {
     m_field.label(place.cell) = reached;
-    m_queue.push(reached.cost + bound(place.column), place.cell);
+    m_queue.emplace(reached.cost + bound(place.column), place.cell);
   }
 
   Cost bound(Column c) const { return kWeightOfLength * stepsBetween(c, m_goal.column); }
@@ -156,7 +157,7 @@ class RelaxedSearch {
   RelaxedField m_field;
   std::array<std::vector<Column>, kSteps.size()> m_discs;  ///< by step
   const std::vector<Cost> m_weights;                       ///< of a length, by rank
-  MonotoneQueue<Cell> m_queue;
+  RelaxedField::Queue m_queue;
   Place m_goal;
   /** Columns from the goal, squared. */
   std::int64_t m_nearest = std::numeric_limits<std::int64_t>::max();
@@ -199,13 +200,13 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
 }
 
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
-                          const GroundPose& goal, bool overForbidden, bool bySingleColumns) {
+                          const GroundPose& goal, bool overForbidden) {
   RelaxedPath guide;
   std::vector<PathPoint>& path = guide.path;
-  guide.stride = bySingleColumns ? 1 : strideOf(checker);
-  RelaxedSearch(checker, overForbidden, guide.stride).run(start, goal, guide);
-  if (path.empty() && guide.stride > 1)  // what classes leave free may be narrower than a step
-    RelaxedSearch(checker, overForbidden, guide.stride = 1).run(start, goal, guide);
+  const int stride = strideOf(checker);
+  RelaxedSearch(checker, overForbidden, stride).run(start, goal, guide);
+  if (path.empty() && stride > 1)  // what classes leave free may be narrower than a step
+    RelaxedSearch(checker, overForbidden, 1).run(start, goal, guide);
   if (path.size() < 2) path.clear();
   if (path.empty()) return guide;
   for (std::size_t i = 1; i < path.size(); ++i) {

@@ -8,9 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <queue>
 #include <utility>
 #include <vector>
 
@@ -18,56 +20,6 @@
 #include "ground/GroundTiles.h"
 
 namespace semantic_planning {
-
-/** Hands out what has the least key, the last that came among equals. No key may be less than the
- * last one that it handed out. Keys that differ from that in the same highest bit share a bucket,
- * which is dealt out when its turn comes. It touches less memory than a binary heap (radix heap:
- * Ahuja et al., "Faster algorithms for the shortest path problem", 1990). */
-template <class Value>
-class MonotoneQueue {
- public:
-  using Key = std::int64_t;
-  using Entry = std::pair<Key, Value>;
-
-  bool empty() const { return m_size == 0; }
-  void push(Key key, const Value& value) {
-    m_buckets[bucketOf(key)].emplace_back(key, value);
-    ++m_size;
-  }
-  const Entry& top() {
-    deal();
-    return m_buckets[0].back();
-  }
-  Entry pop() {
-    deal();
-    const Entry entry = m_buckets[0].back();
-    m_buckets[0].pop_back();
-    --m_size;
-    return entry;
-  }
-
- private:
-  std::size_t bucketOf(Key key) const {
-    const auto differs = static_cast<std::uint64_t>(key ^ m_last);
-    return differs == 0 ? 0 : 64 - static_cast<std::size_t>(__builtin_clzll(differs));
-  }
-
-  /** Fills the first bucket, that of the least key. */
-  void deal() {
-    if (!m_buckets[0].empty()) return;
-    const auto bucket = std::find_if(m_buckets.begin() + 1, m_buckets.end(),
-                                     [](const auto& entries) { return !entries.empty(); });
-    m_last = std::min_element(bucket->begin(), bucket->end(), [](const Entry& a, const Entry& b) {
-               return a.first < b.first;
-             })->first;
-    for (const Entry& e : *bucket) m_buckets[bucketOf(e.first)].push_back(e);
-    bucket->clear();
-  }
-
-  std::array<std::vector<Entry>, 65> m_buckets;  ///< by the highest bit that differs; 0: none
-  std::size_t m_size = 0;
-  Key m_last = 0;
-};
 
 /** Steps to neighbors on a grid, each turned by 45 degrees from the one before, and their lengths
  * in fifths of its spacing. */
@@ -103,6 +55,10 @@ class RelaxedField {
     Cost cost = kUnreached;
     Cell before;
   };
+
+  using Entry = std::pair<Cost, Cell>;
+  /** The least on top. */
+  using Queue = std::priority_queue<Entry, std::vector<Entry>, std::greater<>>;
 
   /** Where a surface is. */
   struct Place {
@@ -201,7 +157,8 @@ class CostField {
     if (!asked.surface || !contains(asked.column)) return kUnreached;
     const Length& known = m_field.label(asked.cell).cost;
     while (!m_queue.empty() && m_queue.top().first < known) {
-      const auto [cost, cell] = m_queue.pop();
+      const auto [cost, cell] = m_queue.top();
+      m_queue.pop();
       Slices::count(1);
       if (cost == m_field.label(cell).cost) leave(m_field.placeOf(cell), cost);
     }
@@ -238,7 +195,7 @@ class CostField {
     Length& known = m_field.label(place.cell).cost;
     if (known <= cost) return;
     known = cost;
-    m_queue.push(cost, place.cell);
+    m_queue.emplace(cost, place.cell);
   }
 
   /** To its neighbors, from each of which a step leads here: whether along the step or back, wheels
@@ -265,14 +222,13 @@ class CostField {
   const int m_reach;  ///< columns to each side of it
   RelaxedField m_field;
   const int m_room;  ///< Surface::clearance2 below the origin, at least
-  MonotoneQueue<RelaxedField::Cell> m_queue;
+  RelaxedField::Queue m_queue;
 };
 
 /** The way of a vehicle that could turn on the spot. */
 struct RelaxedPath {
   std::vector<PathPoint> path;  ///< headings are those of travel; empty if there is no way
   double price = 0;             ///< meters; hardly any path of the vehicle costs less
-  int stride = 1;               ///< columns of its longer steps
   /** Without a way: the place nearest to the goal that can be reached. */
   std::optional<mrpt::math::TPoint2D> nearest;
 };
@@ -283,10 +239,9 @@ std::vector<std::int64_t> weightsOfRanks(const colored_graph::ClassOrder& order)
 
 /** From column to column in eight directions, wherever there is ground: the way of least price. It
  * knows no turning radius. Where nothing is near, steps are about as long as half the vehicle
- * is wide. They are single columns where those find no way, or if they are asked for.
+ * is wide. They are single columns where those find no way.
  * \param overForbidden also over what the order forbids, at the price of the worst rank */
 RelaxedPath searchRelaxed(const CollisionChecker& checker, const GroundPose& start,
-                          const GroundPose& goal, bool overForbidden = false,
-                          bool bySingleColumns = false);
+                          const GroundPose& goal, bool overForbidden = false);
 
 }  // namespace semantic_planning

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "NearestPoses.h"
-#include "TileMarks.h"
 
 namespace semantic_planning {
 
@@ -47,8 +46,7 @@ Roadmap::Roadmap(const CollisionChecker& checker, const RoadmapOptions& options)
       m_nearest(std::make_unique<NearestPoses>(checker.reedsShepp(), neighborsFor(options),
                                                RoadmapOptions::kLongestEdge)),
       m_queryNeighbors(2 * static_cast<std::size_t>(neighborsFor(options))),
-      m_mostEdges(options.maxEdges),
-      m_radius(RoadmapOptions::kLongestEdge) {}
+      m_mostEdges(options.maxEdges) {}
 
 Roadmap::~Roadmap() = default;
 
@@ -100,22 +98,15 @@ void Roadmap::link(VertexId a, VertexId b) {
   }
   const ReedsSheppCurve curve = PosePair(pose(a), pose(b)).curveFrom(pose(a), price);
   const colored_graph::Tolls tolls{tollOf(curve, price), tollOf(curve.reversed(), price)};
-  keepLength(m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(curve.length()), tolls),
-             curve.length());
+  m_graph.addUnevaluatedEdge(a, b, colored_graph::lengthDown(curve.length()), tolls);
 }
 
 void Roadmap::linkOneWay(VertexId from, VertexId to) {
   const MotionCost& price = m_checker.motionCost();
   const ReedsSheppCurve curve = price.shortest(pose(from).pose, pose(to).pose);
-  if (curve.length() > m_radius) return;
+  if (curve.length() > RoadmapOptions::kLongestEdge) return;
   const colored_graph::Tolls tolls{tollOf(curve, price), colored_graph::kClosed};
-  keepLength(m_graph.addUnevaluatedEdge(from, to, colored_graph::lengthDown(curve.length()), tolls),
-             curve.length());
-}
-
-void Roadmap::keepLength(EdgeId e, double length) {
-  if (e >= m_lengths.size()) m_lengths.resize(e + 1);
-  m_lengths[e] = length;
+  m_graph.addUnevaluatedEdge(from, to, colored_graph::lengthDown(curve.length()), tolls);
 }
 
 /** The pairs that are to have edges. */
@@ -155,8 +146,8 @@ void Roadmap::reconcileQueryVertex(VertexId query) {
   std::set<VertexId> wanted;
   for (const auto& n : m_nearest->nearestTo(pose(query), m_queryNeighbors)) wanted.insert(n.id);
   for (const VertexId other : m_queryVertices)
-    if (other != query &&
-        PosePair(pose(query), pose(other)).distance(m_checker.reedsShepp()) <= m_radius)
+    if (other != query && PosePair(pose(query), pose(other)).distance(m_checker.reedsShepp()) <=
+                              RoadmapOptions::kLongestEdge)
       wanted.insert(other);
   const colored_graph::Incidences present = m_graph.incident(query);  // the graph changes below
   for (const Incidence& i : present)
@@ -165,11 +156,26 @@ void Roadmap::reconcileQueryVertex(VertexId query) {
 }
 
 void Roadmap::refresh(const std::vector<Column>& changedTiles) {
-  const TileMarks changed(m_checker.ground(), changedTiles);
-  for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e) {
-    if (!m_graph.containsEdge(e) || m_graph.edge(e).state == EdgeState::Unevaluated) continue;
-    if (changed.anyIn(squareAround(ends(e), m_lengths[e], m_checker))) reevaluate(e);
-  }
+  const std::set<Column> changed(changedTiles.begin(), changedTiles.end());
+  for (EdgeId e = 0; e < m_graph.edgeIdEnd(); ++e)
+    if (m_graph.containsEdge(e) && m_graph.edge(e).state != EdgeState::Unevaluated &&
+        mayDependOn(changed, e))
+      reevaluate(e);
+}
+
+/** A curve stays within half its length of the middle between its ends. */
+bool Roadmap::mayDependOn(const std::set<Column>& tiles, EdgeId e) const {
+  const PosePair poses = ends(e);
+  const auto &a = poses.first.pose, &b = poses.second.pose;
+  const double x = (a.x + b.x) / 2, y = (a.y + b.y) / 2;
+  const double far = colored_graph::toMeters(m_graph.edge(e).length + 1) / 2 + m_checker.reach();
+  const Ground& ground = m_checker.ground();
+  const Column low = tileOf(ground.columnAt(x - far, y - far)),
+               high = tileOf(ground.columnAt(x + far, y + far));
+  for (Column tile = low; tile.y <= high.y; ++tile.y)
+    for (tile.x = low.x; tile.x <= high.x; ++tile.x)
+      if (tiles.count(tile)) return true;
+  return false;
 }
 
 void Roadmap::reevaluate(EdgeId e) {

@@ -62,11 +62,11 @@ class Roadmap {
  private:
   void link(VertexId a, VertexId b);
   void linkOneWay(VertexId from, VertexId to);
-  void keepLength(EdgeId e, double length);
   void connect(VertexId a, VertexId b);
   std::set<std::pair<VertexId, VertexId>> neighbors() const;
   void reconcile();
   void reconcileQueryVertex(VertexId query);
+  bool mayDependOn(const std::set<Column>& tiles, EdgeId e) const;
   void reevaluate(EdgeId e);
   void keepPose(VertexId v, const GroundPose& pose);
 
@@ -74,9 +74,7 @@ class Roadmap {
   colored_graph::ColoredGraph m_graph;
   std::unique_ptr<NearestPoses> m_nearest;
   std::size_t m_queryNeighbors, m_mostEdges;
-  double m_radius;
   std::vector<GroundPose> m_poses;  ///< by vertex id
-  std::vector<double> m_lengths;    ///< of the curves by edge id, meters
   std::set<VertexId> m_queryVertices;
 };
 

@@ -47,7 +47,6 @@ struct VehicleOptions {
  *     wheel_track: 0.5       # m
  *     reverse_weight: 2.5    # what a meter backwards counts; inf: it only drives forward
  *     gear_change: 2.5       # m, what a change of gear counts
- *     steering_change: 0.1   # m, what a change of the steering counts
  *
  * \throw std::runtime_error naming file, line and value. */
 VehicleOptions loadVehicle(const std::filesystem::path& file);
