@@ -91,7 +91,7 @@ void plotRetainedBars(std::ostream& out, const std::vector<Compression>& compres
     for (const Compression& c : compressions) out << 100 * c.kept[id].share.value_or(0) << ' ';
     out << '\n';
   }
-  out << "EOD\nset style histogram clustered gap 0.5\nset style fill solid 1 noborder\nplot ";
+  out << "EOD\nset style histogram clustered gap 1\nset style fill solid 1 noborder\nplot ";
   for (std::size_t s = 0; s < compressions.size(); ++s)
     out << (s ? ", " : "") << "$retained using " << s + 1 << " with histograms" << styleOf(s)
         << " title " << gnuplotText(compressions[s].solution.name);
