@@ -50,8 +50,6 @@ class GroundCosts {
    * the vehicle's height away, and of several levels the nearest counts.
    * \throw std::runtime_error there is no drivable ground, or the map is too wide */
   void takeLargestPart(std::optional<double> floor);
-  /** How high the robot's frame is above the ground, m; none: no ground was seen yet. */
-  std::optional<double> frameHeight() const { return m_height.meters(); }
   /** The box that the cells fill; none: nothing is known. */
   const std::optional<Box>& box() const { return m_box; }
   /** Row by row, the lowest first; kUnknown is 255. */

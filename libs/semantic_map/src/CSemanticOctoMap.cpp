@@ -9,7 +9,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "FolderOfMap.h"
 #include "LikelihoodCache.h"
 
 namespace semantic_map {
@@ -164,7 +163,9 @@ void CSemanticOctoMap::useFilterOfOptions() {
 void CSemanticOctoMap::openFolder(const TFolderOptions& options) {
   checkMayBecomeAnother();
   useFilterOfOptions();
-  m_folder = std::make_unique<Folder>(m_tree, options);
+  using semantic_octree::MapFolder;
+  const auto access = options.readOnly ? MapFolder::Access::Read : MapFolder::Access::Write;
+  m_folder.reset(new Folder{{m_tree, options.folder, access, options.tiles}, options.readOnly});
 }
 
 semantic_octree::MapFolder* CSemanticOctoMap::folder() const {

@@ -10,11 +10,10 @@
 #include <strict_files/OutputFiles.h>
 #include <tree_abstraction/Information.h>
 
-#include "FolderOfMap.h"
-
 namespace semantic_map {
 
 using mrpt_compat::drawing::COctoMapVoxels;
+using semantic_octree::Abstraction;
 using semantic_octree::SemanticOcTree;
 using semantic_types::trafficLight;
 using tree_abstraction::relativeEntropy;
@@ -51,9 +50,9 @@ void CSemanticOctoMap::getVisualizationInto(mrpt_compat::drawing::CSetOfObjects&
   if (!genericMapParams.enableSaveAs3DObject || isEmpty()) return;
   const auto lock = reading();
   if (!renderingOptions.compressed || !hasAbstraction(m_tree)) return draw(m_tree, o);
-  if (m_folder) return draw(m_folder->compressed(), o);
+  if (m_folder) return draw(Abstraction(const_cast<SemanticOcTree&>(m_tree)).compressedMap(), o);
   SemanticOcTree copy(m_tree);
-  draw(semantic_octree::Abstraction(copy).compressedMap(), o);
+  draw(Abstraction(copy).compressedMap(), o);
 }
 
 void CSemanticOctoMap::draw(const SemanticOcTree& tree,
@@ -81,7 +80,10 @@ void CSemanticOctoMap::draw(const SemanticOcTree& tree,
 }
 
 void CSemanticOctoMap::saveMetricMapRepresentationToFile(const std::string& prefix) const {
-  if (m_folder) return m_folder->save();
+  if (m_folder) {  // what was opened to be read has nothing to save
+    const auto lock = reading();
+    return m_folder->readOnly ? void() : m_folder->tiles.save();
+  }
   semantic_octree::saveTree(m_tree, prefix + ".semantic");
   strict_files::StagedFile file(prefix + ".3Dscene");
   mrpt_compat::Scene scene;

@@ -210,7 +210,12 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   bool internal_canComputeObservationLikelihood(
       const mrpt::obs::CObservation& observation) const override;
 
-  struct Folder;
+  /** Tiles come and go while the map is read. */
+  struct Folder {
+    semantic_octree::MapFolder tiles;
+    bool readOnly;
+    std::mutex mutex = {};
+  };
   /** Held while a map in a folder is read: tiles come and go. Others have nothing to wait for. */
   std::unique_lock<std::mutex> reading() const;
   /** In memory. \throw std::runtime_error there is not enough. */
