@@ -61,6 +61,8 @@ struct Cli {
   explicit Cli(CLI::App& app);
   /** Brings the parsed noise to the sensors. */
   void complete();
+  /** Meters along the route. */
+  double placeAt(double time) const { return start + speed * time; }
   bool wantsCamera() const { return sensor != "lidar"; }
   bool wantsLidar() const { return sensor != "camera"; }
 };
@@ -148,14 +150,9 @@ class WorldClasses {
   }
 
   const synthetic_world::ClassTable& table() const { return m_table; }
-  ClassId of(ClassId inWorld) const { return m_ids[inWorld]; }
-  synthetic_world::CameraFrame of(synthetic_world::CameraFrame frame) const {
-    for (ClassId& id : frame.labels.pixels) id = of(id);
-    return frame;
-  }
-  synthetic_world::LabeledCloud of(synthetic_world::LabeledCloud cloud) const {
-    for (ClassId& id : cloud.classes) id = of(id);
-    return cloud;
+  /** The world's become the rawlog's. */
+  void translate(std::vector<ClassId>& labels) const {
+    for (ClassId& id : labels) id = m_ids[id];
   }
 
  private:
@@ -234,26 +231,26 @@ void disturb(synthetic_world::CameraFrame& frame, const synthetic_world::CameraO
 
 /** \param noise of labels; null: each sensor's own */
 std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const WorldClasses& classes,
-                                                const synthetic_world::World& world,
-                                                const synthetic_world::Drive& drive,
+                                                const synthetic_world::Scene& scene,
                                                 std::uint64_t frame,
                                                 label_noise::LabelNoise* noise) {
   const double time = static_cast<double>(frame) / cli.rate;
-  const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
+  const Eigen::Isometry3d T_world_robot = scene.T_world_robot(cli.placeAt(time));
   std::vector<mrpt::obs::CObservation::Ptr> seen;
   if (cli.wantsCamera()) {
     const Eigen::Isometry3d mount = T_robot_camera(cli.cameraPitch);
-    auto image =
-        classes.of(renderCamera(world, T_world_robot * mount, cli.camera, {cli.seed, frame}));
+    auto image = renderCamera(scene.world, T_world_robot * mount, cli.camera, {cli.seed, frame});
+    classes.translate(image.labels.pixels);
     if (noise) disturb(image, cli.camera, T_world_robot * mount, *noise);
     seen.push_back(rangeScan(image, cli.camera, mount, classes.table()));
   }
   if (cli.wantsLidar()) {
     const Eigen::Isometry3d mount = T_robot_lidar();
     const auto path = [&](double share) {
-      return drive.T_world_robot(time + share * cli.turnTime) * mount;
+      return scene.T_world_robot(cli.placeAt(time + share * cli.turnTime)) * mount;
     };
-    auto cloud = classes.of(scanLidar(world, path, cli.lidar, {cli.seed, frame}));
+    auto cloud = scanLidar(scene.world, path, cli.lidar, {cli.seed, frame});
+    classes.translate(cloud.classes);
     if (noise) noise->apply(cloud, T_world_robot * mount);
     const auto scan = labeledCloud(std::move(cloud), mount, classes.table());
     if (cli.turnTime > 0) scan->times = synthetic_world::sharesOfTurn(scan->cloud);
@@ -264,9 +261,8 @@ std::vector<mrpt::obs::CObservation::Ptr> sense(const Cli& cli, const WorldClass
 }
 
 void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::Scene& scene) {
-  const synthetic_world::Drive drive(scene, cli.speed, cli.start);
-  const int frames =
-      cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(drive.duration() * cli.rate));
+  const double duration = scene.route.length() / cli.speed;  // s, of one round
+  const int frames = cli.frames > 0 ? cli.frames : static_cast<int>(std::ceil(duration * cli.rate));
   DriveLog rawlog(cli.output, cli.odometry, cli.odometryNoise, cli.seed);
   std::ostringstream trajectory;
   trajectory << "# time x y z qx qy qz qw (true poses of the robot)\n";
@@ -279,11 +275,11 @@ void writeRawlog(const Cli& cli, const WorldClasses& classes, synthetic_world::S
   for (; k < frames && !stop.pending(); ++k) {
     progress->update(k, std::to_string(k) + " frames");
     const double time = k / cli.rate;
-    const Eigen::Isometry3d T_world_robot = drive.T_world_robot(time);
+    const Eigen::Isometry3d T_world_robot = scene.T_world_robot(cli.placeAt(time));
     walk(cli.people, time, scene);
-    rawlog.write(mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
-                 sense(cli, classes, scene.world, drive, static_cast<std::uint64_t>(k),
-                       noise ? &*noise : nullptr));
+    rawlog.write(
+        mrpt::Clock::fromDouble(kStartTime + time), T_world_robot,
+        sense(cli, classes, scene, static_cast<std::uint64_t>(k), noise ? &*noise : nullptr));
     writePose(trajectory, kStartTime + time, toMrpt(T_world_robot));
   }
   progress.reset();

@@ -18,6 +18,7 @@
 #include <exception>
 #include <iostream>
 
+#include "measuring/Measuring.h"
 #include "simulated_drive/DriveLoop.h"
 
 namespace {
@@ -37,10 +38,9 @@ double heapMegabytes() {
   return static_cast<double>(use.uordblks + use.hblkhd) / 1e6;
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+/** 0 of none. */
+double quantile(const std::vector<double>& values, double share) {
+  return values.empty() ? 0 : measuring::quantile(values, share);
 }
 
 /** Poses on ways, with room around them. */

@@ -147,10 +147,7 @@ namespace {
 TEST(PackedScan, hasTheReliabilityOfLabelsAsPartOfWhatAScanSawInEachTile) {
   const auto scanOfTwoTiles = [](const LabelReliability& labels) {
     PackedScan scan(false, labels);
-    for (const std::uint64_t code : {3, 8}) {
-      scan.beginTile(code).push_back(1);
-      scan.endTile();
-    }
+    for (const std::uint64_t code : {3, 8}) scan.add(code, {1});
     return scan;
   };
   const PackedScan scan = scanOfTwoTiles({0.9, 0.5});

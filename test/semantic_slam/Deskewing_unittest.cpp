@@ -128,9 +128,8 @@ SensorScan partOf(const SensorScan& scan, int part, int parts) {
 
 /** The largest error (m) on 25 m through a village, at 10 m/s with ten turns a second. */
 double errorOf(const Trial& trial) {
-  constexpr double kTurn = 0.1;  // s
+  constexpr double kTurn = 0.1, kSpeed = 10;  // s, m/s
   const synthetic_world::Scene place = synthetic_world::makeScene("village", 2);
-  const synthetic_world::Drive drive(place, 10);
   synthetic_world::LidarOptions lidar;
   lidar.columns = 360;
   Slam slam({});
@@ -138,9 +137,10 @@ double errorOf(const Trial& trial) {
   for (std::uint64_t i = 0; i < 25; ++i) {
     for (int part = 0; part < trial.sensors; ++part) {
       const double time = kTurn * static_cast<double>(i) + 1e-3 * part;
-      const Eigen::Isometry3d T = drive.T_world_robot(time);
+      const Eigen::Isometry3d T = place.T_world_robot(kSpeed * time);
       const auto path = [&](double share) {
-        return drive.T_world_robot(time + (trial.isSkewed ? share * kTurn : 0)) * kRobotLidar;
+        return place.T_world_robot(kSpeed * (time + (trial.isSkewed ? share * kTurn : 0))) *
+               kRobotLidar;
       };
       SensorScan scan{scanLidar(place.world, path, lidar, {1, i}), kRobotLidar};
       if (trial.hasTimes) scan.times = synthetic_world::sharesOfTurn(scan.cloud);
@@ -148,7 +148,7 @@ double errorOf(const Trial& trial) {
       const auto added = slam.add(partOf(scan, part, trial.sensors),
                                   trial.hasOdometry ? std::make_optional(T) : std::nullopt, time);
       const Eigen::Isometry3d T_begin =
-          trial.hasOdometry ? Eigen::Isometry3d::Identity() : drive.T_world_robot(0);
+          trial.hasOdometry ? Eigen::Isometry3d::Identity() : place.T_world_robot(0);
       const Eigen::Isometry3d found =
           T_begin * slam.poses()[added.keyframe] * added.T_keyframe_robot;
       largest = std::max(largest, (found.translation() - T.translation()).norm());

@@ -92,12 +92,11 @@ inline Sensor cameraOf(double maxRange) {
 inline Recording recordingOf(const std::string& scene, std::uint64_t seed, const Sensor& sensor,
                              double meters = 1e9, double hills = 1) {
   const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed, hills);
-  const synthetic_world::Drive drive(place, 1);
   std::mt19937 random(static_cast<unsigned>(seed));
   const auto uniform = [&random] { return static_cast<double>(random()) / 2147483648.0 - 1; };
   Recording r;
   for (double s = 0; s < std::min(meters, place.route.length() + 15); s += 1) {
-    const Eigen::Isometry3d T = drive.T_world_robot(s);
+    const Eigen::Isometry3d T = place.T_world_robot(s);
     r.clouds.push_back(sensor(place.world, T, {seed, r.truth.size()}));
     if (r.truth.empty()) {
       r.odometry.push_back(T);
@@ -127,12 +126,11 @@ struct Mapping {
 inline semantic_octree::SemanticOcTree mapOf(const std::string& scene, std::uint64_t seed,
                                              const Mapping& by) {
   const synthetic_world::Scene place = synthetic_world::makeScene(scene, seed, by.hills);
-  const synthetic_world::Drive drive(place, 1);
   semantic_octree::SemanticOcTree map(by.voxelSize, synthetic_world::classTable());
   semantic_octree::InsertionOptions options;
   options.maxRange = 30;
   for (double s = 0.5; s < by.meters; s += by.step) {
-    const Eigen::Isometry3d T = drive.T_world_robot(s);
+    const Eigen::Isometry3d T = place.T_world_robot(s);
     const auto frame = static_cast<std::uint64_t>(1000 + s);
     map.insert(by.sensor(place.world, T, {seed, frame}), T * by.T_robot_sensor, options);
   }

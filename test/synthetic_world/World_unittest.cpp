@@ -207,16 +207,15 @@ TEST_P(EveryScene, routeStaysOnTheRoadAndClearOfEverything) {
   }
 }
 
-TEST_P(EveryScene, driveIsSmoothAndOnTheGround) {
-  const Drive drive(scene, 1.5);
-  EXPECT_NEAR(drive.duration() * 1.5, scene.route.length(), 1e-9);
-  Eigen::Isometry3d before = drive.T_world_robot(-0.1);
-  for (double t = 0; t < drive.duration(); t += 0.1) {
-    const Eigen::Isometry3d now = drive.T_world_robot(t), moved = before.inverse() * now;
+TEST_P(EveryScene, wayAlongTheRouteIsSmoothAndOnTheGround) {
+  constexpr double kStep = 0.15;  // m
+  Eigen::Isometry3d before = scene.T_world_robot(-kStep);
+  for (double s = 0; s < scene.route.length(); s += kStep) {
+    const Eigen::Isometry3d now = scene.T_world_robot(s), moved = before.inverse() * now;
     EXPECT_NEAR(now.translation().z(),
                 scene.world.groundHeight(now.translation().x(), now.translation().y()), 1e-12);
-    EXPECT_NEAR(moved.translation().norm(), 0.15, 0.01) << t;
-    EXPECT_LT(Eigen::AngleAxisd(moved.linear()).angle(), 0.06) << t;
+    EXPECT_NEAR(moved.translation().norm(), kStep, 0.01) << s;
+    EXPECT_LT(Eigen::AngleAxisd(moved.linear()).angle(), 0.06) << s;
     before = now;
   }
 }
@@ -239,7 +238,6 @@ TEST_P(EveryScene, showsManyClassesFromAbove) {
 
 TEST(Scene, hillsScaleTheGround) {
   EXPECT_EQ(makeScene("park", 1, 0).world.terrain().highest(), 0);
-  EXPECT_EQ(makeScene("park", 1, 0).world.terrain().lowest(), 0);
   EXPECT_GT(makeScene("park", 1, 1).world.terrain().highest(), 2);
   EXPECT_DOUBLE_EQ(makeScene("park", 1, 2).world.groundHeight(3, 4),
                    2 * makeScene("park", 1, 1).world.groundHeight(3, 4));
@@ -257,16 +255,6 @@ TEST(Scene, classTableIsThatOfTheConfiguration) {
   EXPECT_EQ(classTable().size(), kClassCount);
   EXPECT_EQ(classTable().name(kPerson), "person");
   EXPECT_EQ(classTable().name(kFlowerBed), "flower-bed");
-}
-
-TEST(Scene, colorsOfClassesCanBeToldApart) {
-  const ClassTable& table = classTable();
-  for (ClassId a = 1; a <= table.size(); ++a)
-    for (ClassId b = 1; b < a; ++b) {
-      const Color p = table.color(a), q = table.color(b);
-      const Eigen::Vector3d difference(p.r - q.r, p.g - q.g, p.b - q.b);
-      EXPECT_GT(difference.norm(), 40) << table.name(a) << ' ' << table.name(b);
-    }
 }
 
 }  // namespace

@@ -41,21 +41,21 @@ void takeWords(const char*& bytes, VoxelBits* words, std::uint8_t mask) {
 
 TileCodes tilesOf(const PackedScan& scan) {
   TileCodes codes;
-  for (PackedScan::Reader r(scan); !r.atEnd(); r.next()) codes.push_back(r.tile().code);
+  for (const PackedTile& tile : scan.tiles()) codes.push_back(tile.code);
   return codes;
 }
 
 TileCodes differingTiles(const PackedScan& a, const PackedScan& b) {
   TileCodes codes;
   const bool alike = a.labels() == b.labels();
-  PackedScan::Reader x(a), y(b);
-  while (!x.atEnd() || !y.atEnd()) {
-    const std::uint64_t atX = x.atEnd() ? UINT64_MAX : x.tile().code,
-                        atY = y.atEnd() ? UINT64_MAX : y.tile().code;
-    if (atX != atY || !alike || !x.tile().sameContent(y.tile()))
-      codes.push_back(std::min(atX, atY));
-    if (atX <= atY) x.next();
-    if (atY <= atX) y.next();
+  const auto tilesOfA = a.tiles(), tilesOfB = b.tiles();
+  auto x = tilesOfA.begin(), y = tilesOfB.begin();
+  while (x != tilesOfA.end() || y != tilesOfB.end()) {
+    const std::uint64_t atX = x == tilesOfA.end() ? UINT64_MAX : x->code,
+                        atY = y == tilesOfB.end() ? UINT64_MAX : y->code;
+    if (atX != atY || !alike || !x->sameContent(*y)) codes.push_back(std::min(atX, atY));
+    if (atX <= atY) ++x;
+    if (atY <= atX) ++y;
   }
   return codes;
 }
@@ -128,21 +128,27 @@ PackedScan packed(const Scan& scan) {
   std::sort(tiles.begin(), tiles.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   PackedScan result(scan.votes().isSoft(), scan.labels());
+  Bytes content;
   for (const auto& [code, at] : tiles) {
-    packTile(scan.tile(at), scan.votes(), result.beginTile(code));
-    result.endTile();
+    content.clear();
+    packTile(scan.tile(at), scan.votes(), content);
+    result.add(code, content);
   }
   return result;
 }
 
 void unpack(const PackedScan& packed, const TileCodes& wanted, int numClasses,
             const InsertionOptions& options, Scan& scan) {
+  std::vector<PackedTile> tiles = packed.tiles();
+  const auto isUnwanted = [&wanted](const PackedTile& tile) {
+    return !std::binary_search(wanted.begin(), wanted.end(), tile.code);
+  };
+  tiles.erase(std::remove_if(tiles.begin(), tiles.end(), isUnwanted), tiles.end());
+  if (tiles.empty()) return scan.reset();
   TileBox box;
-  forEachTileIn(packed, wanted, [&](const PackedTile& tile) { box.add(tileOf(tile.code)); });
-  if (box.empty()) return scan.reset();
+  for (const PackedTile& tile : tiles) box.add(tileOf(tile.code));
   scan.begin(box, packed.labels(), numClasses, options);
-  forEachTileIn(packed, wanted,
-                [&](const PackedTile& tile) { unpackTile(tile, packed.isSoft(), scan); });
+  for (const PackedTile& tile : tiles) unpackTile(tile, packed.isSoft(), scan);
   scan.finish();
 }
 

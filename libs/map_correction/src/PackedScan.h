@@ -52,48 +52,27 @@ class PackedScan {
   }
   const Bytes& bytes() const { return m_bytes; }
 
-  /** To be filled at the end of bytes, then endTile(). */
-  Bytes& beginTile(std::uint64_t code) {
-    m_begin = m_bytes.size();
-    appendTo(m_bytes, code << kSizeBits);
-    return m_bytes;
+  void add(std::uint64_t code, const Bytes& content) {
+    appendTo(m_bytes, code << kSizeBits | content.size());
+    m_bytes.insert(m_bytes.end(), content.begin(), content.end());
   }
-  void endTile() {
-    const std::uint64_t size = m_bytes.size() - m_begin - sizeof(std::uint64_t);
-    const char* at = &m_bytes[m_begin];
-    const auto header = takeFrom<std::uint64_t>(at) | size;
-    std::memcpy(&m_bytes[m_begin], &header, sizeof header);
+  /** What they point to is the scan's. */
+  std::vector<PackedTile> tiles() const {
+    std::vector<PackedTile> tiles;
+    const char *next = m_bytes.data() + kHeaderBytes, *const end = m_bytes.data() + m_bytes.size();
+    while (next != end) {
+      const auto header = takeFrom<std::uint64_t>(next);
+      tiles.push_back({header >> kSizeBits, next, header & ((std::uint64_t(1) << kSizeBits) - 1)});
+      next += tiles.back().size;
+    }
+    return tiles;
   }
-
-  /** Goes from tile to tile. */
-  class Reader {
-   public:
-    explicit Reader(const PackedScan& scan)
-        : m_next(scan.m_bytes.data() + kHeaderBytes),
-          m_end(scan.m_bytes.data() + scan.m_bytes.size()) {
-      next();
-    }
-    bool atEnd() const { return m_tile.content == nullptr; }
-    const PackedTile& tile() const { return m_tile; }
-    void next() {
-      m_tile = {};
-      if (m_next == m_end) return;
-      const auto header = takeFrom<std::uint64_t>(m_next);
-      m_tile = {header >> kSizeBits, m_next, header & ((std::uint64_t(1) << kSizeBits) - 1)};
-      m_next += m_tile.size;
-    }
-
-   private:
-    const char *m_next, *m_end;
-    PackedTile m_tile{};
-  };
 
  private:
   static constexpr std::size_t kHeaderBytes = 1 + sizeof(LabelReliability);
   static constexpr int kSizeBits = 24;  // 512 soft labels of 255 classes fit
 
   Bytes m_bytes;
-  std::size_t m_begin = 0;
 };
 
 /** What is to be kept of a scan to merge it again. */
@@ -106,19 +85,6 @@ void unpack(const PackedScan& packed, const TileCodes& wanted, int numClasses,
 TileCodes tilesOf(const PackedScan& scan);
 /** The tiles in which not the same was seen; all, if labels are not trusted alike. */
 TileCodes differingTiles(const PackedScan& a, const PackedScan& b);
-/** The tiles of a scan that are among others. \param f is called with each PackedTile */
-template <typename F>
-void forEachTileIn(const PackedScan& scan, const TileCodes& wanted, const F& f) {
-  PackedScan::Reader reader(scan);
-  for (auto code = wanted.begin(); code != wanted.end() && !reader.atEnd();) {
-    if (reader.tile().code == *code) f(reader.tile());
-    if (reader.tile().code < *code)
-      reader.next();
-    else
-      ++code;
-  }
-}
-
 /** Keeps bytes in a file. */
 class ScanStorage {
  public:

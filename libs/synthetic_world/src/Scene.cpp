@@ -35,15 +35,9 @@ Scene makeScene(const std::string& name, std::uint64_t seed, double hills) {
   throw std::invalid_argument("scene: no scene '" + name + "'; there are: " + known);
 }
 
-Drive::Drive(const Scene& scene, double speed, double start)
-    : m_scene(&scene), m_speed(speed), m_start(start) {
-  if (!(speed > 0)) throw std::invalid_argument("drive: a positive speed expected");
-}
-
-Eigen::Isometry3d Drive::T_world_robot(double time) const {
-  const double s = m_start + m_speed * time;
-  const Eigen::Vector2d at = m_scene->route.at(s);
-  return m_scene->world.poseOnGround(at.x(), at.y(), m_scene->route.heading(s));
+Eigen::Isometry3d Scene::T_world_robot(double s) const {
+  const Eigen::Vector2d at = route.at(s);
+  return world.poseOnGround(at.x(), at.y(), route.heading(s));
 }
 
 namespace {

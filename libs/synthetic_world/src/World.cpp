@@ -214,8 +214,7 @@ Terrain::Terrain(int halfExtent, const std::vector<Wave>& waves)
       for (const Wave& w : waves) z += waveHeight(w, nx - halfExtent, ny - halfExtent);
       m_nodes.push_back(z);
     }
-  const auto [low, high] = std::minmax_element(m_nodes.begin(), m_nodes.end());
-  m_lowest = *low, m_highest = *high;
+  m_highest = *std::max_element(m_nodes.begin(), m_nodes.end());
 }
 
 double Terrain::height(double x, double y) const {
@@ -351,13 +350,12 @@ std::optional<Hit> World::castRay(const Eigen::Vector3d& o, const Eigen::Vector3
   }
 
   if (!(nearest.entry.range <= maxRange)) return std::nullopt;
-  Hit hit{nearest.entry.range, o + nearest.entry.range * d, nearest.entry.normal, {}, false};
-  hit.onGround = nearest.solid == nullptr;
-  if (hit.onGround) {
+  Hit hit{nearest.entry.range, o + nearest.entry.range * d, nearest.entry.normal, {}};
+  if (nearest.solid) {
+    hit.material = nearest.solid->materialAt(hit.point, nearest.entry.face);
+  } else {
     hit.normal = m_terrain.normal(hit.point.x(), hit.point.y());
     hit.material = groundClass(hit.point.x(), hit.point.y());
-  } else {
-    hit.material = nearest.solid->materialAt(hit.point, nearest.entry.face);
   }
   return hit;
 }

@@ -12,6 +12,10 @@ namespace synthetic_world {
 struct Scene {
   World world;
   Curve route;  // closed, in the right lane of the roads
+
+  /** A robot on the route, s meters from its start as seen from above: on the ground, with the
+   * pitch and roll of the slope. */
+  Eigen::Isometry3d T_world_robot(double s) const;
 };
 
 /** village: a ring of streets with houses, gardens, a pond. park: lawns, trees, gravel paths around
@@ -23,25 +27,5 @@ std::vector<std::string> sceneNames();
  * \throw std::invalid_argument unknown name (the message lists the known), or hills out of range.
  */
 Scene makeScene(const std::string& name, std::uint64_t seed, double hills = 1.0);
-
-/** A robot that follows a curve over the ground at constant speed.
- *
- * The scene must outlive the drive. */
-class Drive {
- public:
-  /** \param speed Meters of the curve, seen from above, per second.
-   * \param start Meters along the curve at time 0.
-   * \throw std::invalid_argument the speed is not positive. */
-  explicit Drive(const Scene& scene, double speed = 1.5, double start = 0);
-
-  /** Seconds for one round. */
-  double duration() const { return m_scene->route.length() / m_speed; }
-  /** At a time in seconds: on the ground, with the pitch and roll of the slope. */
-  Eigen::Isometry3d T_world_robot(double time) const;
-
- private:
-  const Scene* m_scene;
-  double m_speed, m_start;
-};
 
 }  // namespace synthetic_world

@@ -38,7 +38,6 @@ class Terrain {
   int cells() const { return 2 * static_cast<int>(m_halfExtent); }
   /** Greatest height in a cell. */
   double cellTop(int cx, int cy) const;
-  double lowest() const { return m_lowest; }
   double highest() const { return m_highest; }
 
   /** Where within [from, to] a ray first is on or below the ground of one cell, as if the cell's
@@ -52,7 +51,7 @@ class Terrain {
   double m_halfExtent;
   int m_width;  // nodes in a row
   std::vector<double> m_nodes;
-  double m_lowest, m_highest;
+  double m_highest;
 };
 
 /** A line of straight pieces and arcs that meet without a kink: the middle of a road, the way of a
@@ -66,7 +65,6 @@ class Curve {
   Curve(const std::vector<Eigen::Vector2d>& corners, double radius, bool closed = false);
 
   double length() const { return m_length; }
-  bool closed() const { return m_closed; }
 
   /** Point at length s; s wraps around on a closed curve and is clamped on an open one. */
   Eigen::Vector2d at(double s) const;
@@ -168,7 +166,6 @@ struct Hit {
   double range = 0;  // meters
   Eigen::Vector3d point, normal;
   Material material;
-  bool onGround = false;
 };
 
 /** The truth about a point. */
@@ -206,7 +203,6 @@ class World {
   /** Things that come, go and move, in addition to those of the scene (a person, a roadblock).
    * Replaces those set before. */
   void setMovables(Solids movables) { m_movables = std::move(movables); }
-  const Solids& movables() const { return m_movables; }
 
   /** What is at a point.
    *
