@@ -42,10 +42,9 @@ namespace {
 constexpr int kMaxPixelLabels = 64;
 
 /** Bit c - 1 stands for class c, by its name. */
-template <unsigned BYTES>
 void setPixelLabels(const LabelImage& labels, const ClassTable& table,
                     CObservation3DRangeScan& scan) {
-  auto info = std::make_shared<TPixelLabelInfo<BYTES>>();
+  auto info = std::make_shared<TPixelLabelInfo<kMaxPixelLabels / 8>>();
   info->setSize(labels.rows, labels.cols);
   for (int id = 1; id <= table.size(); ++id) info->setLabelName(id - 1, table.name(id));
   for (int row = 0, i = 0; row < labels.rows; ++row)
@@ -128,15 +127,7 @@ void Output::writeDepth(CObservation3DRangeScan& scan, std::optional<LabelImage>
                       scan.sensorPose);
   }
   m_noise.apply(labels->classes);
-  const int bytes = (m_table.size() + 7) / 8;
-  if (bytes == 1)
-    setPixelLabels<1>(*labels, m_table, scan);
-  else if (bytes == 2)
-    setPixelLabels<2>(*labels, m_table, scan);
-  else if (bytes <= 4)
-    setPixelLabels<4>(*labels, m_table, scan);
-  else
-    setPixelLabels<8>(*labels, m_table, scan);
+  setPixelLabels(*labels, m_table, scan);
   const auto counts = labeled_cloud::ScanConverter(m_table).convert(scan)->counts;
   writeScan(scan, counts.points, counts.labeled);
 }

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using bags::BagTopic;
+using labeled_cloud::toMrpt;
 using point_fields::Frames;
 using semantic_types::ClassTable;
 using Names = std::vector<std::string>;
@@ -123,10 +124,6 @@ class BagContents {
   std::map<std::string, std::string> m_encodings;  ///< of images' topics
 };
 
-mrpt::poses::CPose3D poseOf(const Eigen::Isometry3d& T) {
-  return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T.matrix()));
-}
-
 /** MRPT's scan of ROS's: its beams lie evenly around the frame's x axis, which ROS's do not. */
 mrpt::obs::CObservation2DRangeScan laserScanOf(const point_fields::RawLaserScan& beams) {
   mrpt::obs::CObservation2DRangeScan scan;
@@ -223,7 +220,7 @@ class BagScans {
     if (!m_labelField.empty() && !problem.empty()) throw std::runtime_error(problem);
     if (m_labelField.empty()) cloud.classes.clear();
     m_output.writeCloud(timeOf(message), waiting.topic.name, std::move(cloud),
-                        poseOf(*T_robot_sensor),
+                        toMrpt(*T_robot_sensor),
                         timesOf(message.points, static_cast<double>(message.stamp) * 1e-9));
   }
 
@@ -241,11 +238,11 @@ class BagScans {
     auto cloud = cloudOf(beams, times);
     if (!times.empty())
       return m_output.writeCloud(timeOf(message), waiting.topic.name, std::move(cloud),
-                                 poseOf(*T_robot_sensor), std::move(times));
+                                 toMrpt(*T_robot_sensor), std::move(times));
     auto scan = laserScanOf(beams);
     scan.timestamp = timeOf(message);
     scan.sensorLabel = waiting.topic.name;
-    scan.sensorPose = poseOf(*T_robot_sensor) + mrpt::poses::CPose3D(0, 0, 0, middle, 0, 0);
+    scan.sensorPose = toMrpt(*T_robot_sensor) + mrpt::poses::CPose3D(0, 0, 0, middle, 0, 0);
     m_output.writeScan(scan, scan.getScanSize(), 0);
   }
 
@@ -258,7 +255,7 @@ class BagScans {
     if (!T_robot_optical) return m_output.skip();
     scan.timestamp = timeOf(message);
     scan.sensorLabel = waiting.topic.name;
-    scan.sensorPose = poseOf(*T_robot_optical * point_fields::T_optical_camera());
+    scan.sensorPose = toMrpt(*T_robot_optical * point_fields::T_optical_camera());
     m_output.writeDepth(scan, std::move(classes));
   }
 
@@ -293,7 +290,7 @@ class BagScans {
     if (robot.empty()) return Eigen::Isometry3d::Identity();
     const auto T_map_robot = frames.find(map, robot, seen.stamp).T_target_source;
     const auto T_robot_sensor = frames.find(robot, seen.frame, seen.stamp).T_target_source;
-    if (T_map_robot && T_robot_sensor) m_output.writePose(timeOf(seen), poseOf(*T_map_robot));
+    if (T_map_robot && T_robot_sensor) m_output.writePose(timeOf(seen), toMrpt(*T_map_robot));
     return T_map_robot ? T_robot_sensor : std::nullopt;
   }
 

@@ -22,13 +22,6 @@ inline mrpt::obs::CObservation3DRangeScan::Ptr poleBeforeWall(const DepthCamera&
   return scan;
 }
 
-/** Closed form of the pinhole: x forward, y left, z up. */
-Vector3f pinhole(const DepthCamera& camera, double row, double col, double depth) {
-  return Eigen::Vector3d(depth, depth * (camera.cx - col) / camera.f,
-                         depth * (camera.cy - row) / camera.f)
-      .cast<float>();
-}
-
 TEST(RangeImages, rangesAlongTheRayAreNoDepths) {
   const DepthCamera camera;
   auto obs = camera.see([](int, int) { return 2; });
@@ -142,9 +135,7 @@ TEST(RangeImages, unusableOnesSayWhy) {
   const DepthCamera camera;
   auto obs = camera.see([](int, int) { return 2; });
   obs->hasRangeImage = false;
-  EXPECT_EQ(errorConverting(*obs),
-            "CObservation3DRangeScan 'cam' at 10 s: it has neither a range image "
-            "nor 3D points");
+  EXPECT_EQ(errorConverting(*obs), "CObservation3DRangeScan 'cam' at 10 s: it has no range image");
   obs->hasRangeImage = true;
   obs->cameraParams.ncols = 61;
   EXPECT_TRUE(contains(errorConverting(*obs), "has 60 x 40 pixels"));
@@ -163,33 +154,9 @@ TEST(RangeImages, unusableOnesSayWhy) {
 
 TEST(RangeImages, ofMorePixelsThanMemoryMayHoldAreRefused) {
   auto obs = DepthCamera().see([](int, int) { return 2; });
-  obs->hasRangeImage = false;
-  obs->hasPoints3D = true;
   obs->cameraParams.ncols = obs->cameraParams.nrows = 18000;
-  obs->points3D_x = obs->points3D_y = obs->points3D_z = {1.f};
-  obs->points3D_idxs_x = obs->points3D_idxs_y = {5};
   EXPECT_TRUE(
       contains(errorConverting(*obs), "a camera of 18000 x 18000 pixels; 40 million are allowed"));
-}
-
-TEST(Points3d, withoutAllTheirCoordinatesOrPixelsAreRefused) {
-  using Scan = CObservation3DRangeScan;
-  const auto errorAfter = [](const std::function<void(Scan&)>& change) {
-    auto obs = DepthCamera().see([](int, int) { return 2; });
-    obs->hasRangeImage = false;
-    obs->hasPoints3D = true;
-    obs->points3D_x = obs->points3D_y = obs->points3D_z = {1.f, 2.f, 3.f};
-    obs->points3D_idxs_x = obs->points3D_idxs_y = {5, 6, 7};
-    change(*obs);
-    return errorConverting(*obs);
-  };
-  EXPECT_EQ(errorAfter([](Scan&) {}), "");
-  for (const auto& [change, words] : std::vector<std::pair<void (*)(Scan&), std::string>>{
-           {[](Scan& o) { o.points3D_y.pop_back(); }, "2 y for 3 3D points"},
-           {[](Scan& o) { o.points3D_z.push_back(1); }, "4 z for 3 3D points"},
-           {[](Scan& o) { o.points3D_idxs_y.pop_back(); }, "2 rows for 3 3D points"},
-           {[](Scan& o) { o.points3D_idxs_x.pop_back(); }, "2 columns for 3 3D points"}})
-    EXPECT_TRUE(contains(errorAfter(change), words));
 }
 
 TEST(RangeImages, externallyStoredOnesAreLoadedAndUnloaded) {
@@ -204,43 +171,6 @@ TEST(RangeImages, externallyStoredOnesAreLoadedAndUnloaded) {
   EXPECT_EQ(obs->rangeImage.size(), 0);
   std::filesystem::remove(folder / "range.bin");
   EXPECT_TRUE(contains(errorConverting(*obs), "range.bin"));
-}
-
-TEST(Points3d, atTheirPixelsOrInOrderTakeThePixelsLabels) {
-  const DepthCamera camera;
-  auto obs = poleBeforeWall(camera);
-  const auto expected = convert(*obs);
-  obs->hasRangeImage = false;
-  obs->hasPoints3D = true;
-  for (int r = 0; r < camera.rows; ++r)
-    for (int c = 0; c < camera.cols; ++c) {
-      const Vector3f p = pinhole(camera, r, c, onPole(r, c) ? kPole : kWall);
-      obs->points3D_x.push_back(p.x());
-      obs->points3D_y.push_back(p.y());
-      obs->points3D_z.push_back(p.z());
-    }
-  EXPECT_EQ(convert(*obs).cloud.classes, expected.cloud.classes);
-  EXPECT_EQ(convert(*obs).cloud.size(), expected.cloud.size());
-
-  auto sparse = std::make_shared<CObservation3DRangeScan>(*obs);
-  sparse->points3D_x = {1, NAN, 0}, sparse->points3D_y = {0, 0, 0}, sparse->points3D_z = {0, 0, 0};
-  sparse->points3D_idxs_x = {26, 3, 4}, sparse->points3D_idxs_y = {7, 3, 4};
-  const auto one = convert(*sparse);
-  ASSERT_EQ(one.cloud.size(), 1u);
-  EXPECT_EQ(one.cloud.classes[0], 1);
-  sparse->points3D_idxs_x = {25, 60, 4};
-  EXPECT_TRUE(contains(errorConverting(*sparse), "row 3, column 60"));
-}
-
-TEST(Points3d, withoutPixelsCannotBeLabeledButCountForOccupancy) {
-  const DepthCamera camera;
-  auto obs = poleBeforeWall(camera);
-  obs->hasRangeImage = false;
-  obs->hasPoints3D = true;
-  obs->points3D_x = {1, 2}, obs->points3D_y = {0, 0}, obs->points3D_z = {0, 0};
-  EXPECT_TRUE(contains(errorConverting(*obs), "the label image has 60 x 40 pixels"));
-  obs->pixelLabels.reset();
-  EXPECT_EQ(convert(*obs).counts.points, 2u);
 }
 
 /** Points whose class is not that of the surface at their depth. */

@@ -167,18 +167,14 @@ TEST(RawlogTrajectory, movementsAddUpInTheRobotsFrame) {
 }
 
 TEST(RawlogTrajectory, movementsIn3dCountToo) {
+  const TemporaryFolder folder;
   mrpt::obs::CActionRobotMovement3D action;
   action.poseChange.mean = CPose3D(0, 0, 1, 0, 0.5, 0);
-  RawlogEntry moved, seen;
-  moved.actions = mrpt::obs::CActionCollection::Create();
-  moved.actions->insert(action);
-  seen.observations = {odometry(1, {})};
-  seen.isFrame = true;
-  RawlogTrajectory path;
-  path.add(moved);
-  path.add(seen);
-  EXPECT_EQ(path.source(), RawlogTrajectory::Source::Movements);
-  EXPECT_LT(apart(*path.trajectory().at(at(1)), action.poseChange.mean), 1e-9);
+  const auto actions = mrpt::obs::CActionCollection::Create();
+  actions->insert(action);
+  const auto path =
+      readTrajectory({writeRawlog(folder / "a.rawlog", {actions, frame({odometry(1, {})})})});
+  EXPECT_LT(apart(*path.at(at(1)), action.poseChange.mean), 1e-9);
 }
 
 TEST(RawlogTrajectory, plainOdometryIsTheLastResort) {

@@ -7,6 +7,7 @@
 #include <semantic_types/ClassTable.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "CountedLabels.h"
 #include "DataSets.h"
@@ -134,15 +135,20 @@ Share labelFlatByColorCamera(double occlusionParallax) {
   const auto frames = readReplica(sharedDataDir() / "replica_apartment_0", 55);
   for (std::size_t f = 0; f < frames.size(); f += 11) {
     mrpt::obs::CObservation3DRangeScan scan;
-    scan.hasPoints3D = true;
+    scan.hasRangeImage = true;
+    scan.rangeUnits = 1 / 6553.5f;
+    scan.cameraParams.ncols = scan.cameraParams.nrows = 512;
+    scan.cameraParams.setIntrinsicParamsFromValues(256, 256, 255.5, 255.5);
+    scan.rangeImage_setSize(512, 512);
+    scan.rangeImage.setZero();
     scan.cameraParamsIntensity = color.camera;
     scan.relativePoseIntensityWRTDepth = beside;
     semantic_types::LabeledCloud cloud = frames[f].cloud;
     for (auto& p : cloud.points) {  // the data set looks along z, MRPT along x
+      const Eigen::Array2f pixel = 256.f / p.z() * p.head<2>().array() + 255.5f;
+      scan.rangeImage(std::lround(pixel.y()), std::lround(pixel.x())) =
+          static_cast<std::uint16_t>(std::lround(p.z() / scan.rangeUnits));
       p = Eigen::Vector3f(p.z(), -p.x(), -p.y());
-      scan.points3D_x.push_back(p.x());
-      scan.points3D_y.push_back(p.y());
-      scan.points3D_z.push_back(p.z());
     }
     const auto labels = std::make_shared<OneImage>(
         paint(cloud, labeled_cloud::toEigen(beside).inverse(), color, 1));

@@ -80,19 +80,6 @@ TEST(Deskewing, needsATimeForEachPoint) {
   EXPECT_THROW(deskewed(scan, Vector6::Ones()), std::invalid_argument);
 }
 
-TEST(Deskewing, ofAMapFollowsOdometryWhereThatIsBelieved) {
-  const Sweep sweep(1, 0.1);
-  const auto mapOf = [&](const SensorScan& second) {
-    SemanticOcTree map(0.2, synthetic_world::classTable());
-    Mapper mapper(map, {});
-    mapper.insert(SensorScan{}, Eigen::Isometry3d::Identity(), 7);
-    mapper.insert(second, movedFor(0.5, sweep.velocity), 7.5);
-    return map;
-  };
-  EXPECT_TRUE(mapOf(sweep.skewed) == mapOf(deskewed(sweep.skewed, sweep.velocity)));
-  EXPECT_FALSE(mapOf(sweep.skewed) == mapOf(deskewed(sweep.skewed, Vector6::Zero())));
-}
-
 TEST(Deskewing, ofASecondSensorSoonAfterIsByTheVelocityOfBoth) {
   const Sweep sweep(1, 0.1);
   const Eigen::Isometry3d T = movedFor(0.5, sweep.velocity);

@@ -10,16 +10,6 @@
 
 using namespace recordings;
 
-TEST(Slam, closesTheLoopOfAPark) {
-  const Recording r = recordingOf("park", 1, lidarOf(0.1));
-  Slam slam({});
-  addAll(slam, r, kRobotLidar);
-  EXPECT_GT((r.odometry.back().translation() - r.truth.back().translation()).norm(), 5);
-  EXPECT_GT(slam.report().loops, 0u);
-  EXPECT_LT(errorsOf(slam.poses(), r).last, 0.1);
-  EXPECT_LT(errorsOf(slam.poses(), r).rootMeanSquare, 0.07);
-}
-
 TEST(Slam, closesTheLoopOfAVillageWithoutLabels) {
   Recording r = recordingOf("village", 2, lidarOf(0));
   SlamOptions options;

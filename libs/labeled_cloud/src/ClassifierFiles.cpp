@@ -13,7 +13,6 @@ using semantic_types::ClassId;
 using semantic_types::ClassTable;
 using semantic_types::kNoClass;
 using strict_files::atLeast;
-using strict_files::Choices;
 using strict_files::OptionList;
 using strict_files::require;
 
@@ -68,26 +67,6 @@ void addRow(const strict_files::StrictYaml& yaml, const YAML::Node& row,
 }
 
 }  // namespace
-
-const Choices<NetworkOptions::Fit>& choicesOf(NetworkOptions::Fit) {
-  using Fit = NetworkOptions::Fit;
-  static const Choices<Fit> choices = {{"stretch", Fit::Stretch}, {"width", Fit::Width}};
-  return choices;
-}
-
-const Choices<NetworkOptions::Channels>& choicesOf(NetworkOptions::Channels) {
-  using Channels = NetworkOptions::Channels;
-  static const Choices<Channels> choices = {{"rgb", Channels::Rgb}, {"bgr", Channels::Bgr}};
-  return choices;
-}
-
-const Choices<NetworkOptions::Content>& choicesOf(NetworkOptions::Content) {
-  using Content = NetworkOptions::Content;
-  static const Choices<Content> choices = {{"scores", Content::Scores},
-                                           {"probabilities", Content::Probabilities},
-                                           {"ids", Content::Ids}};
-  return choices;
-}
 
 void NetworkOptions::describeInput(OptionList& list) {
   list.add("width", width, "pixels", atLeast(1), "width of the input; must be given");

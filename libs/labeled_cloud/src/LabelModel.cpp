@@ -108,12 +108,6 @@ void soften(int numClasses, LabeledCloud& cloud, Write write) {
 
 }  // namespace
 
-const strict_files::Choices<LabelModel::Kind>& choicesOf(LabelModel::Kind) {
-  using Kind = LabelModel::Kind;
-  static const strict_files::Choices<Kind> choices = {{"soft", Kind::Soft}, {"hard", Kind::Hard}};
-  return choices;
-}
-
 void LabelModel::describe(strict_files::OptionList& list) {
   list.add("kind", kind, "",
            "whether labels are probabilities where they can be, or the likeliest class is all that "

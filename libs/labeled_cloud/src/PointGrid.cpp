@@ -106,21 +106,16 @@ PixelRays::PixelRays(const mrpt::img::TCamera& camera) : m_camera(camera) {
     m_rays.emplace_back(static_cast<float>(-ray.x), static_cast<float>(-ray.y));
 }
 
-namespace {
-
-std::string sizeText(long rows, long cols) {
-  return std::to_string(cols) + " x " + std::to_string(rows);
-}
-
-}  // namespace
-
 void checkSize(const CObservation3DRangeScan& scan) {
   const auto& image = scan.rangeImage;
   const mrpt::img::TCamera& camera = scan.cameraParams;
+  const auto size = [](auto cols, auto rows) {
+    return std::to_string(cols) + " x " + std::to_string(rows);
+  };
   if (std::size_t(image.rows()) != camera.nrows || std::size_t(image.cols()) != camera.ncols)
-    throw std::invalid_argument("the range image has " + sizeText(image.rows(), image.cols()) +
+    throw std::invalid_argument("the range image has " + size(image.cols(), image.rows()) +
                                 " pixels, but its camera is calibrated for " +
-                                sizeText(camera.nrows, camera.ncols));
+                                size(camera.ncols, camera.nrows));
 }
 
 PointGrid unproject(const CObservation3DRangeScan& scan, const PixelRays& rays) {
@@ -132,39 +127,6 @@ PointGrid unproject(const CObservation3DRangeScan& scan, const PixelRays& rays) 
     const Eigen::Vector3f direction(1, rays[i].x(), rays[i].y());
     const float r = range[i] * scan.rangeUnits;
     grid.points[i] = direction * (scan.range_is_depth ? r : r / direction.norm());
-  }
-  return grid;
-}
-
-PointGrid gridOfPoints(const CObservation3DRangeScan& scan) {
-  const std::size_t count = scan.points3D_x.size();
-  const auto check = [count](const char* what, std::size_t number) {
-    if (number != count)
-      throw std::invalid_argument(std::to_string(number) + " " + what + " for " +
-                                  std::to_string(count) + " 3D points");
-  };
-  check("y", scan.points3D_y.size());
-  check("z", scan.points3D_z.size());
-  if (!scan.points3D_idxs_x.empty()) {
-    check("columns", scan.points3D_idxs_x.size());
-    check("rows", scan.points3D_idxs_y.size());
-  }
-  const int rows = static_cast<int>(scan.cameraParams.nrows);
-  const int cols = static_cast<int>(scan.cameraParams.ncols);
-  const bool indexed = count > 0 && !scan.points3D_idxs_x.empty();
-  const bool organized = indexed || count == std::size_t(rows) * cols;
-  PointGrid grid(organized ? rows : 1, organized ? cols : static_cast<int>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t pixel = i;
-    if (indexed) {
-      const int row = scan.points3D_idxs_y[i], col = scan.points3D_idxs_x[i];
-      if (row >= rows || col >= cols)
-        throw std::invalid_argument("a 3D point at pixel row " + std::to_string(row) + ", column " +
-                                    std::to_string(col) + " of an image of " +
-                                    sizeText(rows, cols));
-      pixel = std::size_t(row) * cols + col;
-    }
-    grid.points[pixel] = {scan.points3D_x[i], scan.points3D_y[i], scan.points3D_z[i]};
   }
   return grid;
 }

@@ -46,12 +46,6 @@ void checkSize(const mrpt::obs::CObservation3DRangeScan& scan);
 /** Points of the range image. \param rays of its pixels, as many */
 PointGrid unproject(const mrpt::obs::CObservation3DRangeScan& scan, const PixelRays& rays);
 
-/** The observation's 3D points at their pixels: by their pixel indices, or in order if there is one
- * point for each pixel. Points without pixels: a single row.
- * \throw std::invalid_argument a point's pixel is outside the camera's image; coordinates or pixels
- * are missing. */
-PointGrid gridOfPoints(const mrpt::obs::CObservation3DRangeScan& scan);
-
 /** Removes points that hang between two surfaces at a depth edge. In a row or a column such a point
  * lies strictly between both neighbors in depth, and continues neither side's surface. Slanted
  * surfaces count, too: planes are straight lines in 1/depth along rows and columns.

@@ -155,17 +155,14 @@ std::optional<LabeledScan> ScanConverter::convert(const CObservation& observatio
 }
 
 void ScanConverter::addRangeScan(const CObservation3DRangeScan& observation, LabeledScan& scan) {
-  if (!observation.hasRangeImage && !observation.hasPoints3D)
-    throw std::invalid_argument("it has neither a range image nor 3D points");
+  if (!observation.hasRangeImage) throw std::invalid_argument("it has no range image");
   const mrpt::img::TCamera& camera = observation.cameraParams;
   if (double(camera.nrows) * camera.ncols > kMostPixels)
     throw std::invalid_argument("a camera of " + std::to_string(camera.ncols) + " x " +
                                 std::to_string(camera.nrows) + " pixels; 40 million are allowed");
-  if (observation.hasRangeImage) checkSize(observation);
-  if (observation.hasRangeImage && !(m_rays && m_rays->isFor(camera)))
-    m_rays = std::make_unique<PixelRays>(camera);
-  PointGrid grid =
-      observation.hasRangeImage ? unproject(observation, *m_rays) : gridOfPoints(observation);
+  checkSize(observation);
+  if (!(m_rays && m_rays->isFor(camera))) m_rays = std::make_unique<PixelRays>(camera);
+  PointGrid grid = unproject(observation, *m_rays);
 
   auto labels = m_labeler->label(observation);
   scan.labelsMissing = !labels;
@@ -176,7 +173,7 @@ void ScanConverter::addRangeScan(const CObservation3DRangeScan& observation, Lab
   scan.cloud.points.reserve(pixels.size());
   for (const std::size_t pixel : pixels) scan.cloud.points.push_back(grid.points[pixel]);
   if (labels) addLabels(observation, grid, pixels, std::move(*labels), scan);
-  if (!m_options.emptyCarves || !observation.hasRangeImage) return;
+  if (!m_options.emptyCarves) return;
   scan.empty = emptyPixels(observation, *m_rays, m_options.decimation);
   scan.emptyFrom = static_cast<double>(observation.maxRange);
 }

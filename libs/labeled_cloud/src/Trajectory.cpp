@@ -129,66 +129,45 @@ Trajectory loadTumTrajectory(const std::filesystem::path& file, const Trajectory
   return trajectory;
 }
 
-void RawlogTrajectory::add(const RawlogEntry& entry) {
-  if (entry.actions) move(*entry.actions);
-  if (entry.isFrame) addFrame(entry.observations);
-  for (const CObservation::Ptr& observation : entry.observations) {
-    if (const auto pose = std::dynamic_pointer_cast<CObservationRobotPose>(observation))
-      m_robotPoses.insert(pose->timestamp, pose->pose.mean);
-    if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation))
-      m_odometry.insert(odometry->timestamp, CPose3D(odometry->odometry));
-  }
-}
-
-void RawlogTrajectory::move(const mrpt::obs::CActionCollection& actions) {
-  CPose3D movement;
-  if (!actions.getFirstMovementEstimationMean(movement)) return;
-  m_T_map_robot = m_T_map_robot + movement;
-  m_moved = true;
-}
-
-void RawlogTrajectory::addFrame(const std::vector<CObservation::Ptr>& observations) {
-  for (const CObservation::Ptr& observation : observations)
-    if (observation->timestamp != INVALID_TIMESTAMP)
-      m_movements.insert(observation->timestamp, m_T_map_robot);
-}
-
-RawlogTrajectory::Source RawlogTrajectory::source() const {
-  if (!m_robotPoses.empty()) return Source::RobotPoses;
-  if (m_moved) return Source::Movements;
-  return m_odometry.empty() ? Source::None : Source::Odometry;
-}
-
-const Trajectory& RawlogTrajectory::trajectory() const {
-  switch (source()) {
-    case Source::RobotPoses:
-      return m_robotPoses;
-    case Source::Movements:
-      return m_movements;
-    default:
-      return m_odometry;
-  }
-}
-
 namespace {
 
-void addNaming(const std::filesystem::path& file, const RawlogEntry& entry, RawlogTrajectory& to) {
-  try {
-    to.add(entry);
-  } catch (const std::invalid_argument& e) {
-    throw std::runtime_error(file.string() + ": " + e.what());
+/** Where a rawlog's entries have the robot, by source. */
+struct Sources {
+  Trajectory robotPoses, movements, odometry;
+  CPose3D T_map_robot;
+  bool hasMoved = false;
+
+  void add(const RawlogEntry& entry) {
+    CPose3D movement;
+    if (entry.actions && entry.actions->getFirstMovementEstimationMean(movement)) {
+      T_map_robot = T_map_robot + movement;
+      hasMoved = true;
+    }
+    for (const CObservation::Ptr& observation : entry.observations) {
+      if (entry.isFrame && observation->timestamp != INVALID_TIMESTAMP)
+        movements.insert(observation->timestamp, T_map_robot);
+      if (const auto pose = std::dynamic_pointer_cast<CObservationRobotPose>(observation))
+        robotPoses.insert(pose->timestamp, pose->pose.mean);
+      if (const auto odometer = std::dynamic_pointer_cast<CObservationOdometry>(observation))
+        odometry.insert(odometer->timestamp, CPose3D(odometer->odometry));
+    }
   }
-}
+};
 
 }  // namespace
 
 Trajectory findTrajectory(const std::vector<std::filesystem::path>& rawlogs) {
-  RawlogTrajectory collected;
+  Sources sources;
   for (const auto& file : rawlogs) {
     RawlogReader reader(file);
-    while (const auto entry = reader.next()) addNaming(file, *entry, collected);
+    while (const auto entry = reader.next()) try {
+        sources.add(*entry);
+      } catch (const std::invalid_argument& e) {
+        throw std::runtime_error(file.string() + ": " + e.what());
+      }
   }
-  return collected.trajectory();
+  if (!sources.robotPoses.empty()) return sources.robotPoses;
+  return sources.hasMoved ? sources.movements : sources.odometry;
 }
 
 Trajectory readTrajectory(const std::vector<std::filesystem::path>& rawlogs,

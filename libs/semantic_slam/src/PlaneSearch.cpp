@@ -16,10 +16,8 @@ constexpr int kBest = 255;
 /** A point is blurred by a Gaussian of so many cells, and drawn to twice that. */
 constexpr double kBlur = 1.2;
 constexpr int kReach = 3;
-/** If more than one square in so many may fit, the next finer level is searched in rows, where a
- * square takes less time. Below the finest level that is looked at as a whole there would be too
- * many to remember. */
-constexpr int kRows = 16, kFinest = 2;
+/** Squares in rows take so many times less time. */
+constexpr int kRows = 16;
 /** Points whose scores 16 bits hold. */
 constexpr std::size_t kInSum = 257;
 /** Places that are remembered at most, where many around the best fit as well. */
@@ -170,59 +168,39 @@ class PlaneSearch::Search {
  private:
   static bool isWorse(const Candidate& a, const Candidate& b) { return a.score < b.score; }
 
-  /** As many of the best as a search gets to before it gives up. */
+  /** As many of the best as a search gets to before it gives up, sorted; of those that are alike
+   * the last. */
   std::vector<Candidate> coarsest(int least) {
-    const std::size_t most = m_most / 4 + 1;
     std::vector<Candidate> open;
     std::vector<int> scores;
-    int lowest = least, finest = kFinest;  // lowest that is remembered
-    while (finest < kLevels - 1 && looksAtAll(finest) / kRows > m_most) ++finest;
+    const int n = (2 * m_radius >> kCoarsest) + 1;  // along each axis
     for (int angle = 0; angle <= 2 * m_angles; ++angle) {
-      int level = kLevels;
-      std::ptrdiff_t above = 0;
-      do {
-        scoreAll(--level, angle, scores);
-        above = std::count_if(scores.begin(), scores.end(), [=](int s) { return s > least; });
-      } while (level > finest && kRows * above > static_cast<std::ptrdiff_t>(scores.size()));
-      const int n = numSquares(level);
-      m_inRows += scores.size() * 4 / 3;  // coarser levels have a quarter
-      for (int i = 0; above > 0 && i < n * n; ++i)
-        if (scores[static_cast<std::size_t>(i)] > lowest)
-          open.push_back({level, angle, (i % n << level) - m_radius, (i / n << level) - m_radius,
-                          scores[static_cast<std::size_t>(i)]});
-      if (open.size() / 2 < most) continue;
-      keepBest(open, most);
-      lowest = open.front().score - 1;
+      scoreAll(n, angle, scores);
+      m_inRows += scores.size();
+      for (int i = 0; i < n * n; ++i)
+        if (const int score = scores[static_cast<std::size_t>(i)]; score > least)
+          open.push_back({kCoarsest, angle, (i % n << kCoarsest) - m_radius,
+                          (i / n << kCoarsest) - m_radius, score});
     }
-    keepBest(open, most);
+    std::stable_sort(open.begin(), open.end(), isWorse);
+    const auto kept = static_cast<std::ptrdiff_t>(std::min(m_most / 4 + 1, open.size()));
+    open.erase(open.begin(), open.end() - kept);
     return open;
   }
-  /** Sorts them; of those that are alike it keeps the last. */
-  static void keepBest(std::vector<Candidate>& open, std::size_t most) {
-    std::stable_sort(open.begin(), open.end(), isWorse);
-    open.erase(open.begin(), open.end() - static_cast<std::ptrdiff_t>(std::min(most, open.size())));
-  }
-  std::size_t looksAtAll(int level) const {
-    const auto n = static_cast<std::size_t>(numSquares(level));
-    return n * n * m_cells.size();
-  }
-  /** Along each axis. */
-  int numSquares(int level) const { return (2 * m_radius >> level) + 1; }
-  /** Scores all squares of the window, row by row. */
-  void scoreAll(int level, int angle, std::vector<int>& scores) const {
-    const int n = numSquares(level), width = m_grid.m_width >> level,
-              height = m_grid.m_height >> level;
+  /** Scores the window's coarsest squares, n x n, row by row. */
+  void scoreAll(int n, int angle, std::vector<int>& scores) const {
+    const int width = m_grid.m_width >> kCoarsest, height = m_grid.m_height >> kCoarsest;
     scores.assign(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);
     std::vector<std::uint16_t> sums(scores.size());
     std::size_t inSums = 0;
     const auto& cells = m_cells[static_cast<std::size_t>(angle)];
-    const auto& squares = m_grid.m_levels[static_cast<std::size_t>(level)];
+    const auto& squares = m_grid.m_levels.back();
     for (const auto& [cx, cy] : cells) {
-      const int x = cx - m_radius, y = cy - m_radius, column = x >> level, row = y >> level;
+      const int x = cx - m_radius, y = cy - m_radius, column = x >> kCoarsest, row = y >> kCoarsest;
       const int first = std::max(0, -column), last = std::min(n, width - column);
       for (int j = std::max(0, -row); first < last && j < std::min(n, height - row); ++j) {
         const std::uint8_t* from =
-            &squares[m_grid.indexOf(level, x + (first << level), y + (j << level))];
+            &squares[m_grid.indexOf(kCoarsest, x + (first << kCoarsest), y + (j << kCoarsest))];
         std::uint16_t* to = &sums[static_cast<std::size_t>(j * n + first)];
         for (int i = 0; i < last - first; ++i) to[i] = static_cast<std::uint16_t>(to[i] + from[i]);
       }

@@ -17,8 +17,8 @@ using PlanePoints = std::vector<Eigen::Vector2d>;
 PlanePoints uprightPoints(const LabeledCloud& cloud, bool isPlanar, double cell);
 
 /** Where in a plane a scan fits best: exhaustive search of a window by branch and bound (Hess et
- * al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). For each heading it begins with the
- * coarsest squares most of which bounds exclude, all of them, in rows as they stand in memory.
+ * al., "Real-Time Loop Closure in 2D LIDAR SLAM", 2016). For each heading it begins with all of
+ * the coarsest squares, in rows as they stand in memory.
  * Scores are integers, so that every machine finds the same. */
 class PlaneSearch {
  public:
@@ -56,7 +56,8 @@ class PlaneSearch {
   };
   class Search;
 
-  static constexpr int kLevels = 6, kMargin = 1 << (kLevels - 1);  ///< cells; no square is larger
+  static constexpr int kCoarsest = 5, kLevels = kCoarsest + 1;
+  static constexpr int kMargin = 1 << kCoarsest;  ///< cells; no square is larger
   void drawPoints(const PlanePoints& points);
   void pool();
   /** Where the highest score in the square of 2^level cells stands that begins at a cell. Of

@@ -10,6 +10,8 @@ namespace {
 
 using semantic_octree::SemanticOcTree;
 
+const std::vector<double> kCells = {8, 4, 2, 1};  // m
+
 void addVoxels(const SemanticOcTree& map, const SemanticOcTree::leaf_iterator& leaf,
                LabeledCloud& cloud) {
   const double edge = map.getResolution();
@@ -25,23 +27,14 @@ void addVoxels(const SemanticOcTree& map, const SemanticOcTree::leaf_iterator& l
 
 }  // namespace
 
-Reference::Reference(const SemanticOcTree& map, std::vector<double> cellSizes, bool useClasses)
-    : m_voxelSize(map.getResolution()),
-      m_cellSizes(std::move(cellSizes)),
-      m_useClasses(useClasses) {
-  const double largest = *std::min_element(m_cellSizes.begin(), m_cellSizes.end());
+Reference::Reference(const SemanticOcTree& map, bool useClasses)
+    : m_voxelSize(map.getResolution()), m_useClasses(useClasses) {
   for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf)
-    if (map.isNodeOccupied(*leaf) && leaf.getSize() <= largest) addVoxels(map, leaf, m_voxels);
+    if (map.isNodeOccupied(*leaf) && leaf.getSize() <= kCells.back())
+      addVoxels(map, leaf, m_voxels);
 }
 
 double Reference::deviation() const { return m_voxelSize / std::sqrt(12); }
-
-const std::vector<Submap>& Reference::inSpace() {
-  if (m_isSlice || m_submaps.empty())
-    m_submaps = submapsOf(m_voxels, m_cellSizes, m_useClasses, false, deviation());
-  m_isSlice = false;
-  return m_submaps;
-}
 
 auto Reference::layersOf(const LabeledCloud& scan, const Eigen::Isometry3d& T_map_scan) const
     -> Layers {
@@ -54,10 +47,11 @@ auto Reference::layersOf(const LabeledCloud& scan, const Eigen::Isometry3d& T_ma
   return {std::round(lowest) - 1, std::round(highest) + 1};
 }
 
-const std::vector<Submap>& Reference::sliceAt(const LabeledCloud& scan,
-                                              const Eigen::Isometry3d& T_map_scan) {
-  const Layers layers = layersOf(scan, T_map_scan);
-  if (m_isSlice && layers == m_layers) return m_submaps;
+const std::vector<Submap>& Reference::submapsFor(const LabeledCloud& scan,
+                                                 const Eigen::Isometry3d& T_map_scan,
+                                                 bool isPlanar) {
+  const Layers layers = isPlanar ? layersOf(scan, T_map_scan) : Layers(-HUGE_VAL, HUGE_VAL);
+  if (layers == m_layers) return m_submaps;
   LabeledCloud cloud;
   for (std::size_t i = 0; i < m_voxels.size(); ++i) {
     const double z = m_voxels.points[i].z() / m_voxelSize;
@@ -65,9 +59,8 @@ const std::vector<Submap>& Reference::sliceAt(const LabeledCloud& scan,
     cloud.points.push_back(m_voxels.points[i]);
     cloud.classes.push_back(m_voxels.classes[i]);
   }
-  m_submaps = submapsOf(cloud, m_cellSizes, m_useClasses, true, deviation());
+  m_submaps = submapsOf(cloud, kCells, m_useClasses, isPlanar, deviation());
   m_layers = layers;
-  m_isSlice = true;
   return m_submaps;
 }
 

@@ -13,21 +13,18 @@ class Reference {
  public:
   /** None. */
   Reference() = default;
-  /** The map is not needed afterwards. \param cellSizes edges of cubes, meters
-   * \param useClasses false: all points are of one class */
-  Reference(const semantic_octree::SemanticOcTree& map, std::vector<double> cellSizes,
-            bool useClasses);
+  /** The map is not needed afterwards. \param useClasses false: all points are of one class */
+  Reference(const semantic_octree::SemanticOcTree& map, bool useClasses);
 
   bool exists() const { return m_voxelSize > 0; }
   /** Standard deviation of the middle of a voxel as a surface's place, m: more points do not make
    * it less. */
   double deviation() const;
 
-  /** What a scan in space is compared with. */
-  const std::vector<Submap>& inSpace();
-  /** What a scan of horizontal beams is compared with, in x and y alone: its layers of voxels, at
-   * least two, for it may lie between. */
-  const std::vector<Submap>& sliceAt(const LabeledCloud& scan, const Eigen::Isometry3d& T_map_scan);
+  /** What a scan is compared with. If its beams are horizontal, that are its layers of voxels, at
+   * least two, for it may lie between; x and y alone count then. */
+  const std::vector<Submap>& submapsFor(const LabeledCloud& scan,
+                                        const Eigen::Isometry3d& T_map_scan, bool isPlanar);
 
  private:
   /** Where the lowest begins and the highest ends, in voxels. */
@@ -35,12 +32,10 @@ class Reference {
   Layers layersOf(const LabeledCloud& scan, const Eigen::Isometry3d& T_map_scan) const;
 
   double m_voxelSize = 0;  // m
-  std::vector<double> m_cellSizes;
   bool m_useClasses = true;
   LabeledCloud m_voxels;
   std::vector<Submap> m_submaps;  ///< that were asked for last
-  bool m_isSlice = false;         ///< of these layers
-  Layers m_layers;
+  Layers m_layers = {0, 0};       ///< of these; in space: all
 };
 
 }  // namespace semantic_slam

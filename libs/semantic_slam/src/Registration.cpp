@@ -155,28 +155,6 @@ void Submap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cl
   }
 }
 
-void Submap::add(const Submap& finer) {
-  for (const std::uint32_t number : finer.m_new) {
-    const Cell& changed = finer.m_cells[number];
-    const Eigen::Array3i cube = changed.cube.unaryExpr([](int c) { return (c - (c & 1)) / 2; });
-    const std::size_t numNew = m_new.size();
-    Sum& s = cellOf(cube, changed.id).sum;
-    if (m_new.size() == numNew) continue;  // all of its eight are in it
-    s = Sum();
-    for (int i = 0; i < 8; ++i) {
-      const Eigen::Array3i part(i & 1, i >> 1 & 1, i >> 2);
-      const std::uint32_t at = finer.m_numbers.find(finer.keyOf(2 * cube + part, changed.id));
-      if (at == KeyNumbers::kNone) continue;
-      const Sum& of = finer.m_cells[at].sum;
-      const Eigen::Vector3d corner = part.cast<double>() * finer.m_cellSize;
-      const Eigen::Matrix3d cross = corner * of.sum.transpose();
-      s.n += of.n;
-      s.sum += of.sum + of.n * corner;
-      s.squares += of.squares + cross + cross.transpose() + of.n * corner * corner.transpose();
-    }
-  }
-}
-
 auto Submap::distributionOf(const Sum& s) const -> Distribution {
   // Variances of n points all over a cube scatter by sqrt(0.8 / n) of their mean.
   const double ofFilledCube =

@@ -35,18 +35,12 @@ SensorScale SensorScale::of(const LabeledCloud& cloud, bool isPlanar) {
 std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells,
                               bool useClasses, bool isPlanar, double deviation) {
   std::vector<Submap> submaps;
-  for (const double size : cells) submaps.emplace_back(size, useClasses, isPlanar);
-  submaps.back().add(cloud, Eigen::Isometry3d::Identity(), deviation);
-  finish(submaps);
-  return submaps;
-}
-
-void finish(std::vector<Submap>& submaps) {
-  for (std::size_t i = submaps.size() - 1; i > 0; --i) {
-    submaps[i - 1].add(submaps[i]);
-    submaps[i].finish();
+  for (const double size : cells) {
+    submaps.emplace_back(size, useClasses, isPlanar);
+    submaps.back().add(cloud, Eigen::Isometry3d::Identity(), deviation);
+    submaps.back().finish();
   }
-  submaps.front().finish();
+  return submaps;
 }
 
 void LocalMap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_last_keyframe,
@@ -57,9 +51,10 @@ void LocalMap::add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_last_ke
     m_parts.push_back(
         {submapsOf({}, scale.cells, useClasses, scale.isPlanar), {Eigen::Isometry3d::Identity()}});
   }
-  for (Part& part : m_parts) part.submaps.back().add(cloud, part.poses.back());
+  for (Part& part : m_parts)
+    for (Submap& submap : part.submaps) submap.add(cloud, part.poses.back());
   if (m_parts.front().poses.size() >= 2 * most) m_parts.pop_front();
-  finish(m_parts.front().submaps);  // the other one is not asked yet
+  for (Submap& submap : m_parts.front().submaps) submap.finish();  // the others are not asked yet
 }
 
 }  // namespace semantic_slam

@@ -29,11 +29,9 @@ struct SensorScale {
   static SensorScale of(const LabeledCloud& cloud, bool isPlanar);
 };
 
-/** A submap of the cloud for each edge of cubes (m), each half of the one before. */
+/** A submap of the cloud for each edge of cubes (m). */
 std::vector<Submap> submapsOf(const LabeledCloud& cloud, const std::vector<double>& cells,
                               bool useClasses, bool isPlanar, double deviation = 0);
-/** Brings what was added to the last of such submaps into all of them. */
-void finish(std::vector<Submap>& submaps);
 
 /** What the last keyframes saw, for the next scan to be registered to. It grows with each keyframe.
  * At twice the wanted number a second one, which began half way, takes its place (Hess et al.,

@@ -81,10 +81,6 @@ std::vector<std::string> SlamReport::warnings() const {
                        std::to_string(open) +
                        " of its looks, and no loop was closed: what was seen twice there may be "
                        "drawn twice");
-  if (twofold > 0)
-    warnings.push_back("by " + std::to_string(twofold) +
-                       " looks, two places fit what was seen after scans that fit nothing: it was "
-                       "put in neither, and may be drawn twice");
   if (apart > 0)
     warnings.push_back("places that were seen twice are drawn up to " + tenths(apart) +
                        " m beside themselves: the map is wrong there");

@@ -129,9 +129,8 @@ class SlamEngine {
   /** So that a scan that fits nothing is an event, in a plane. Where many fit nothing, something
    * else is wrong. */
   bool lossIsRare() const;
-  /** Looks whether what follows a loss fits what was before it; if not, searches it everywhere.
-   * \return whether poses moved */
-  bool mendPieces(bool isLast = false);
+  /** Looks whether what follows a loss, so many keyframes, fits what was before it. */
+  void settleDoubt(std::size_t later);
   bool holdsAcross(std::size_t first) const;
   /** A piece begins, which nothing but odometry connects to what was before. */
   void tearAt(std::size_t first);
@@ -141,9 +140,7 @@ class SlamEngine {
   using Part = std::vector<std::size_t>;
   /** All keyframes are in one; the largest first. */
   std::vector<Part> parts() const;
-  /** Searches the piece that the robot is in. */
-  bool joinPiece();
-  /** Searches all that is not in the largest part. */
+  /** At the end: searches all that is not in the largest part. \return whether poses moved */
   bool joinParts();
   /** Whether its frame is that of the map: looks at a reference connect it, or, where there are
    * none, it has the first keyframe. */
@@ -152,22 +149,19 @@ class SlamEngine {
    * odometry has it. \return whether it is in its place now */
   bool join(const Part& part, const std::vector<PoseEdge>& finds);
   /** Stretches of a part that were found in another, most of those that agree. */
-  std::vector<PoseEdge> findPart(const Part& others, const Part& part);
+  std::vector<PoseEdge> findPart(const Part& others, const Part& part) const;
   struct Places {
     Part keyframes;
-    std::vector<Pose> poses;  ///< of all keyframes
-    PlaneSearch search;       ///< of what they saw
+    PlaneSearch search;  ///< of what they saw
     Eigen::Vector3d middle;
     PlaneSearch::Window window;  ///< all of it
   };
-  /** The last ones are kept while none has moved. */
-  const Places& placesOf(const Part& part);
+  Places placesOf(const Part& part) const;
   using Stretch = std::pair<std::size_t, std::size_t>;  ///< first and last keyframe
-  /** Each has half of its keyframes in common with the next one. */
+  /** Each has three quarters of its keyframes in common with the next one. */
   static std::vector<Stretch> stretchesOf(const Part& part);
   /** Where what a stretch saw fits best. */
-  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes,
-                                      std::size_t& looks);
+  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes) const;
 
   // --- Loops and the reference ---
   bool closeLoops();
@@ -177,8 +171,7 @@ class SlamEngine {
                                     const std::function<double(std::size_t)>& farthest) const;
   /** Where a stretch fits best. */
   struct Look {
-    Pose T_map;         ///< of the keyframe whose frame the stretch is in
-    double off, score;  ///< m from where the poses have it; share of the highest
+    Pose T_map;  ///< of the keyframe whose frame the stretch is in
     bool isAlone;
     std::size_t first, last;  ///< keyframes that it was compared with
   };
@@ -208,9 +201,6 @@ class SlamEngine {
   std::size_t keyframesBeside() const {
     return static_cast<std::size_t>(m_scale.submapKeyframes / 2);
   }
-  /** Share of the highest score of every other keyframe of the newest stretch in those between: as
-   * well it fits where it was before. */
-  double ownScore() const;
   /** Where the robot may be off after a way (m). */
   PlaneSearch::Window windowAfter(double way) const;
   /** Information of what was found, by its points and by what is known of such finds at most. */
@@ -265,13 +255,9 @@ class SlamEngine {
   std::size_t m_looks = 0;                      ///< left for this keyframe
   std::vector<PoseEdge> m_pendingLoops, m_pendingReferences;  ///< they may be wrong
   bool m_isOptimized = true;
-  std::optional<std::size_t> m_doubted, m_piece;  ///< first keyframes: after a loss; of the piece
-  std::vector<std::size_t> m_tears;  ///< first keyframes of all pieces but the first, in order
-  std::optional<PoseEdge> m_pendingPiece;
-  std::optional<Places> m_places;
-  double m_nextJoin = 0;                        ///< m of the piece's way
-  int m_notFound = 0;                           ///< pieces before it, one after the other
-  Reference m_reference;                        ///< none: there is no map
+  std::optional<std::size_t> m_doubted;  ///< first keyframe after a loss
+  std::vector<std::size_t> m_tears;      ///< first keyframes of all pieces but the first, in order
+  Reference m_reference;                 ///< none: there is no map
   Matrix6 m_mostOfReference = Matrix6::Zero();  ///< information, at most
 };
 

@@ -10,7 +10,7 @@ namespace semantic_slam {
 
 std::vector<std::size_t> SlamEngine::outnumbered(std::size_t by) const {
   constexpr std::size_t kOneIn = 20;  // columns may be undecided: stray points fall anywhere
-  if (m_keyframes.empty() || m_doubted || m_piece || parts().size() > 1) return {};
+  if (m_keyframes.empty() || m_doubted || parts().size() > 1) return {};
   struct Looks {
     std::size_t earlier = 0, later = 0;
   };
@@ -88,8 +88,6 @@ void SlamEngine::forget(const std::vector<std::size_t>& keyframes) {
   m_looked = m_keyframes.size();
   m_pendingLoops.clear();
   m_pendingReferences.clear();
-  m_pendingPiece.reset();
-  m_places.reset();
   m_tears.clear();  // all pieces are joined
 }
 

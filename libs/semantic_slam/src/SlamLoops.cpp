@@ -26,10 +26,8 @@ constexpr std::size_t kMostPlaces = 3;
 /** Cells of the grid: least window of a search at the end, and how far off a find has to be for a
  * warning. */
 constexpr double kLeftWindow = 20, kApart = 3;
-/** Least share of the highest score where poses are right already, by the first window. Where they
- * would move it is one of the stretch's own score, for people and noise fit nowhere. What goes on
- * into a corridor that nobody saw fits wrong places up to .75 of that. */
-constexpr double kLeastScore = 0.5, kMovingScore = 0.8;
+/** Least share of the highest score. */
+constexpr double kLeastScore = 0.5;
 /** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
  */
 constexpr double kAgree = 0.2, kAgreeWay = 0.03, kAgreeAngle = 2 * kDegree,
@@ -44,7 +42,7 @@ constexpr double kTorn = 100, kTornMore = 1.5;
 
 void SlamEngine::setReference(const semantic_octree::SemanticOcTree& map) {
   if (!m_keyframes.empty()) throw std::logic_error("Slam: a reference, but scans were added");
-  m_reference = Reference(map, {8, 4, 2, 1}, m_options.useClasses);
+  m_reference = Reference(map, m_options.useClasses);
   m_mostOfReference = informationOf(std::max(kLoopMeters, m_reference.deviation()), kLoopAngle);
 }
 
@@ -125,26 +123,11 @@ bool SlamEngine::closeLoops() {
       const std::size_t before = m_edges.size();
       moved |= confirm(m_pendingLoops, *edge);
       if (m_edges.size() == before) continue;
-      if (m_piece && place < *m_piece) {  // it is where odometry has it
-        m_piece.reset();
-        m_report.twofold = 0;
-      }
       m_report.loops += m_edges.size() - before;
       m_report.open = 0;
     }
   }
   return moved;
-}
-
-double SlamEngine::ownScore() const {
-  const std::size_t newest = m_keyframes.size() - 1;
-  PlanePoints some, others;
-  for (std::size_t k = newest - std::min(newest, keyframesBeside()); k <= newest; ++k)
-    for (const Eigen::Vector2d& p : upright(moved(seenAt(k).cloud, m_poses[k])))
-      (k % 2 == newest % 2 ? some : others).push_back(p);
-  const PlaneSearch::Window here{0, 0};
-  const auto own = PlaneSearch(others, m_scale.gridCell).find(some, {0, 0, 0}, here, 0);
-  return own ? own->score : 1;
 }
 
 PlaneSearch::Window SlamEngine::windowAfter(double way) const {
@@ -166,10 +149,9 @@ auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen&
   // Wherever the robot is in the window, all that it sees was seen from these keyframes.
   const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
                                               window.radius / m_scale.keyframeDistance);
-  const std::size_t end = m_piece && place < *m_piece ? std::min(*m_piece, keyframe) : keyframe;
   const std::size_t first = place - std::min(place, reach);
   std::size_t last = place;
-  while (last < place + reach && last + 1 < end &&
+  while (last < place + reach && last + 1 < keyframe &&
          wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
     ++last;
   const auto found = PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
@@ -177,12 +159,7 @@ auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen&
   if (!found) return std::nullopt;
   Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
-  return Look{m_poses[place] * T_found,
-              (found->pose - guess).head<2>().norm(),
-              found->score,
-              found->isAlone,
-              first,
-              last};
+  return Look{m_poses[place] * T_found, found->isAlone, first, last};
 }
 
 std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way,
@@ -199,8 +176,6 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
     found = lookAround(place, newest, stretch, whole, looks);
   }
   if (!found) return std::nullopt;
-  if (found->off > kWindow * m_scale.gridCell && found->score < kMovingScore * ownScore())
-    return std::nullopt;
   if (!found->isAlone) {
     m_report.open += way > m_scale.loopLength;  // no loop leads there yet
     return std::nullopt;
@@ -354,7 +329,8 @@ void SlamEngine::optimizePoses() {
 }
 
 bool SlamEngine::finish() {
-  bool moved = mendPieces(true) || !m_isOptimized;
+  settleDoubt(1);
+  bool moved = joinParts() || !m_isOptimized;
   if (!m_isOptimized) optimizePoses();
   moved |= closeLeftLoops() || !m_isOptimized;
   if (!m_isOptimized) optimizePoses();
@@ -363,8 +339,7 @@ bool SlamEngine::finish() {
 
 std::optional<Registration> SlamEngine::findInReference(const Seen& seen, const Pose& T_map_guess) {
   if (!m_reference.exists()) return std::nullopt;
-  const auto& submaps =
-      m_scale.isPlanar ? m_reference.sliceAt(seen.cloud, T_map_guess) : m_reference.inSpace();
+  const auto& submaps = m_reference.submapsFor(seen.cloud, T_map_guess, m_scale.isPlanar);
   const Registration r = match(submaps, seen, T_map_guess, Matrix6::Zero());
   const bool isFound = r.coveredShare >= kCovered && r.matchedShare >= 0.6;
   return isFound ? std::make_optional(r) : std::nullopt;

@@ -14,10 +14,6 @@ constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
 /** Share of the highest score of a place that is searched everywhere. Right places have .5 to .9;
  * wrong ones, up to .7, have others beside them that fit as well. */
 constexpr double kFoundScore = 0.5;
-/** A piece is searched when it is so long, m, and each time that it grew by the factor. For each of
- * the last pieces that was not found, of so many, it has to be twice as long. */
-constexpr double kFirstLook = 4, kNextLook = 1.4;
-constexpr int kMostNotFound = 3;
 /** Keyframes that are searched at most; points of them; edge of the search's cells, of a loop's. */
 constexpr std::size_t kSearched = 40, kMostPoints = 400;
 constexpr double kCells = 2;
@@ -30,13 +26,11 @@ const Matrix6 kUnknown = informationOf(100, 10);
 
 }  // namespace
 
-bool SlamEngine::mendPieces(bool isLast) {
-  if (m_doubted && *m_doubted + (isLast ? 1 : keyframesBeside()) <= m_keyframes.size()) {
-    const std::size_t first = *m_doubted;
-    m_doubted.reset();
-    if (first > 0 && !holdsAcross(first)) tearAt(first);
-  }
-  return isLast ? joinParts() : m_piece && joinPiece();
+void SlamEngine::settleDoubt(std::size_t later) {
+  if (!m_doubted || *m_doubted + later > m_keyframes.size()) return;
+  const std::size_t first = *m_doubted;
+  m_doubted.reset();
+  if (first > 0 && !holdsAcross(first)) tearAt(first);
 }
 
 bool SlamEngine::holdsAcross(std::size_t first) const {
@@ -52,11 +46,6 @@ bool SlamEngine::holdsAcross(std::size_t first) const {
 
 void SlamEngine::tearAt(std::size_t first) {
   m_tears.push_back(first);
-  // Where pieces are not found, the next ones hardly are, and each look takes long.
-  m_notFound = m_piece ? m_notFound + 1 : 0;
-  m_piece = first;
-  m_nextJoin = std::ldexp(kFirstLook, std::min(m_notFound, kMostNotFound));
-  m_pendingPiece.reset();
   m_pendingLoops.clear();
   const auto leadsAcross = [first](const PoseEdge& e) {
     return e.isDoubtful && e.a != PoseEdge::kMap && e.a < first && e.b >= first;
@@ -114,35 +103,8 @@ auto SlamEngine::parts() const -> std::vector<Part> {
   return parts;
 }
 
-bool SlamEngine::joinPiece() {
-  const std::size_t newest = m_keyframes.size() - 1;
-  const double way = m_keyframes[newest].way - m_keyframes[*m_piece].way;
-  if (way < m_nextJoin) return false;
-  m_nextJoin = kNextLook * way;
-  const auto all = parts();
-  const auto own = std::find_if(all.begin(), all.end(),
-                                [newest](const Part& part) { return part.back() == newest; });
-  if (own->front() < *m_piece) {  // looks at a reference connect it
-    m_piece.reset();
-    return false;
-  }
-  const std::size_t length = std::min(newest - *m_piece, kSearched);
-  const Places& places = placesOf(all[own == all.begin()]);
-  const auto found = findStretch(places, {newest - length, newest}, m_looks);
-  if (!found) return false;
-  std::vector<PoseEdge> finds{*found};
-  if (m_pendingPiece && agree(*m_pendingPiece, *found)) finds.push_back(*m_pendingPiece);
-  m_pendingPiece = found;
-  Part piece(newest + 1 - *m_piece);
-  std::iota(piece.begin(), piece.end(), *m_piece);
-  if (!join(piece, finds)) return false;
-  m_piece.reset();
-  return true;
-}
-
 bool SlamEngine::joinParts() {
   bool moved = false;
-  m_report.twofold = 0;  // all parts are looked for again
   auto all = parts();
   for (std::size_t i = 1; i < all.size(); ++i)
     if (join(all[i], findPart(all[0], all[i]))) {
@@ -150,7 +112,6 @@ bool SlamEngine::joinParts() {
       all = parts();
       i = 0;  // what was not found before may be now
     }
-  m_places.reset();
   return moved;
 }
 
@@ -178,14 +139,12 @@ bool SlamEngine::join(const Part& part, const std::vector<PoseEdge>& finds) {
   }
   m_edges.insert(m_edges.end(), finds.begin(), finds.end());
   ++m_report.loops;
-  m_report.twofold = 0;
-  m_places.reset();
   optimizePoses();
   return true;
 }
 
 auto SlamEngine::stretchesOf(const Part& part) -> std::vector<Stretch> {
-  const std::size_t step = (std::min(kSearched, part.size()) + 1) / 2;
+  const std::size_t step = (std::min(kSearched, part.size()) + 3) / 4;
   std::vector<Stretch> stretches;
   for (std::size_t i = 1, first = 0; i < part.size(); ++i) {
     if (part[i] != part[i - 1] + 1) first = i;
@@ -195,14 +154,12 @@ auto SlamEngine::stretchesOf(const Part& part) -> std::vector<Stretch> {
   return stretches;
 }
 
-std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part) {
-  const Places& places = placesOf(others);
+std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part) const {
+  const Places places = placesOf(others);
   const std::vector<Stretch> stretches = stretchesOf(part);
   std::vector<PoseEdge> finds, most;
-  for (const Stretch& stretch : stretches) {
-    std::size_t looks = PlaneSearch::kMostLooks;
-    if (const auto found = findStretch(places, stretch, looks)) finds.push_back(*found);
-  }
+  for (const Stretch& stretch : stretches)
+    if (const auto found = findStretch(places, stretch)) finds.push_back(*found);
   for (const PoseEdge& find : finds) {
     std::vector<PoseEdge> alike{find};
     for (const PoseEdge& other : finds)
@@ -212,12 +169,7 @@ std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part)
   return most;
 }
 
-auto SlamEngine::placesOf(const Part& part) -> const Places& {
-  const auto stays = [this](std::size_t k) {
-    return m_poses[k].matrix() == m_places->poses[k].matrix();
-  };
-  if (m_places && m_places->keyframes == part && std::all_of(part.begin(), part.end(), stays))
-    return *m_places;
+auto SlamEngine::placesOf(const Part& part) const -> Places {
   const double cell = kCells * m_scale.gridCell;
   PlanePoints all;
   Eigen::AlignedBox2d box;
@@ -228,15 +180,14 @@ auto SlamEngine::placesOf(const Part& part) -> const Places& {
       box.extend(p);
     }
   const Eigen::Vector2d middle = box.center();
-  return m_places.emplace(Places{part,
-                                 m_poses,
-                                 PlaneSearch(all, cell),
-                                 {middle.x(), middle.y(), 0},
-                                 {box.sizes().maxCoeff() / 2, M_PI}});
+  return {part,
+          PlaneSearch(all, cell),
+          {middle.x(), middle.y(), 0},
+          {box.sizes().maxCoeff() / 2, M_PI}};
 }
 
-std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes,
-                                                std::size_t& looks) {
+std::optional<PoseEdge> SlamEngine::findStretch(const Places& places,
+                                                const Stretch& keyframes) const {
   const std::size_t last = keyframes.second;
   const Seen stretch = pointsOf(keyframes.first, last, last);
   const PlanePoints searched =
@@ -244,8 +195,7 @@ std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stre
   PlanePoints some;
   const std::size_t every = 1 + searched.size() / kMostPoints;
   for (std::size_t i = 0; i < searched.size(); i += every) some.push_back(searched[i]);
-  const auto found = places.search.find(some, places.middle, places.window, kFoundScore, looks);
-  m_report.twofold += found && !found->isAlone;
+  const auto found = places.search.find(some, places.middle, places.window, kFoundScore);
   if (!found || !found->isAlone) return std::nullopt;
   const Pose T_map = poseOfFlat(found->pose);
   const Part& part = places.keyframes;

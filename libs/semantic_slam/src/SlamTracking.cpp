@@ -130,8 +130,9 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
   if (isTorn()) m_local.clear();
   begin(now, rigid(m_poses.back() * T_last_robot), T_last_robot);
   m_looks = kLiveLooks;
-  const bool mended = mendPieces(), followed = followReference();
-  return {last + 1, Pose::Identity(), true, closeLoops() || followed || mended, m_velocity};
+  settleDoubt(keyframesBeside());
+  const bool followed = followReference();
+  return {last + 1, Pose::Identity(), true, closeLoops() || followed, m_velocity};
 }
 
 auto SlamEngine::seenIn(const SensorScan& scan, double middle, const Vector6& velocity,

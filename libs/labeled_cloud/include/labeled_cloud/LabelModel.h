@@ -71,6 +71,8 @@ struct LabelModel {
   void apply(int numClasses, const std::vector<float>& confidences,
              semantic_types::LabeledCloud& cloud) const;
 };
-const strict_files::Choices<LabelModel::Kind>& choicesOf(LabelModel::Kind);
+inline strict_files::Choices<LabelModel::Kind> choicesOf(LabelModel::Kind) {
+  return {{"soft", LabelModel::Kind::Soft}, {"hard", LabelModel::Kind::Hard}};
+}
 
 }  // namespace labeled_cloud

@@ -45,9 +45,18 @@ struct NetworkOptions {
   /** \throw std::invalid_argument naming the field and its value. */
   void validate() const;
 };
-const strict_files::Choices<NetworkOptions::Fit>& choicesOf(NetworkOptions::Fit);
-const strict_files::Choices<NetworkOptions::Channels>& choicesOf(NetworkOptions::Channels);
-const strict_files::Choices<NetworkOptions::Content>& choicesOf(NetworkOptions::Content);
+inline strict_files::Choices<NetworkOptions::Fit> choicesOf(NetworkOptions::Fit) {
+  return {{"stretch", NetworkOptions::Fit::Stretch}, {"width", NetworkOptions::Fit::Width}};
+}
+inline strict_files::Choices<NetworkOptions::Channels> choicesOf(NetworkOptions::Channels) {
+  return {{"rgb", NetworkOptions::Channels::Rgb}, {"bgr", NetworkOptions::Channels::Bgr}};
+}
+inline strict_files::Choices<NetworkOptions::Content> choicesOf(NetworkOptions::Content) {
+  using Content = NetworkOptions::Content;
+  return {{"scores", Content::Scores},
+          {"probabilities", Content::Probabilities},
+          {"ids", Content::Ids}};
+}
 
 /** Reads options from a YAML file, see doc/handbook/labels.md and config/networks/.
  * \throw std::runtime_error naming file, line and what was expected; a class that the table lacks

@@ -135,9 +135,9 @@ struct ScanConverterOptions {
 
 /** Makes labeled clouds of observations.
  *
- * - CObservation3DRangeScan: the range image, or the 3D points where there is none, each point with
- *   the label of its pixel in the image that the labels belong to. In a color image of another
- *   camera that is the pixel it is projected to; points outside of it or hidden have no class.
+ * - CObservation3DRangeScan: the range image, each point with the label of its pixel in the image
+ *   that the labels belong to. In a color image of another camera that is the pixel it is projected
+ *   to; points outside of it or hidden have no class.
  *   Labels come from the ImageLabeler given, else from the observation's pixelLabels, which are
  *   those of the depth image.
  * - CObservationLabeledCloud: as it is. Where it names its classes, they are found by name in the

@@ -50,9 +50,6 @@ class Submap {
   /** \param deviation standard deviation of each point, along each axis, m */
   void add(const LabeledCloud& cloud, const Eigen::Isometry3d& T_submap_cloud,
            double deviation = 0);
-  /** Instead of points, which it has none of its own: a submap of cubes half as large, to which
-   * points were added since its finish(). */
-  void add(const Submap& finer);
   /** Computes the distributions of cubes to which points were added. */
   void finish();
 

@@ -41,7 +41,6 @@ struct SlamReport {
   std::size_t loops = 0;       ///< edges to places of before
   std::size_t undone = 0;      ///< loops that contradicted the trajectory between their ends
   std::size_t open = 0;        ///< looks since the last loop that two places fit: none was closed
-  std::size_t twofold = 0;     ///< looks for a piece that two places fit: it was not joined
   std::size_t referenced = 0;  ///< keyframes that were found in the reference
   double way = 0;              ///< m
   double unheld = 0;           ///< of it, where scans did not hold the robot in each direction
