@@ -85,13 +85,12 @@ std::optional<GoalMisfit> findMisfit(const SemanticPlanner& planner, const TPose
   const Surroundings heights(ground, from, ground.keyOf(z), far + ground.voxelSize());
   ObstacleOptions all, things;
   things.forbiddenGround = planner.options().ground.keepOff;
-  const ObstacleFinder belowWheels(planner, all), around(planner, things);
   for (const auto& [distance, c, isUnderWheels] : claim) {
     if (!heights.contains(c)) continue;
     const int height = heights.height(c);
     const Surface* s = ground.near(c, height, ground.step());
     if (s && s->filled) continue;  // as steep as it may be, nobody saw it
-    if (!(isUnderWheels ? belowWheels : around).isObstacle(c, height, s)) continue;
+    if (!isObstacle(planner, isUnderWheels ? all : things, c, height, s)) continue;
     if (!isAtSeenGround(ground, heights, c)) continue;
     const TPoint2D at{ground.centerOf(c.x), ground.centerOf(c.y)};
     const auto top = ground.find(at.x, at.y, ground.centerOf(height));

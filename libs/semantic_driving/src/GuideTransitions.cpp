@@ -7,16 +7,10 @@
 
 namespace semantic_driving {
 
-const strict_files::Choices<Target>& choicesOf(Target) {
-  static const strict_files::Choices<Target> choices = {{"none", Target::None},
-                                                        {"goal", Target::Goal},
-                                                        {"frontier", Target::Frontier},
-                                                        {"recovery", Target::Recovery},
-                                                        {"back", Target::Back}};
-  return choices;
+const char* nameOf(Target target) {
+  static constexpr const char* kNames[] = {"none", "goal", "frontier", "recovery", "back"};
+  return kNames[static_cast<std::size_t>(target)];
 }
-
-const char* nameOf(Target target) { return strict_files::nameIn(choicesOf(target), target); }
 
 namespace {
 

@@ -9,11 +9,10 @@ using namespace semantic_planning;
 ObstaclePoints senseObstacles(const SemanticPlanner& planner, const mrpt::math::TPose2D& pose,
                               double z, const ObstacleOptions& options) {
   const Ground& ground = planner.ground();
-  const ObstacleFinder finder(planner, options);
   ObstaclePoints obstacles;
   const Surroundings surroundings(ground, pose, ground.keyOf(z), options.radius);
   surroundings.forEach([&](Column c, int height, const Surface* surface) {
-    if (!finder.isObstacle(c, height, surface)) return;
+    if (!isObstacle(planner, options, c, height, surface)) return;
     const auto p = pose.inverseComposePoint({ground.centerOf(c.x), ground.centerOf(c.y)});
     obstacles.emplace_back(p.x, p.y);
   });

@@ -12,31 +12,21 @@
 
 namespace semantic_driving {
 
-/** Which columns are obstacles at a height of the ground. */
-class ObstacleFinder {
- public:
-  ObstacleFinder(const semantic_planning::SemanticPlanner& planner, const ObstacleOptions& options)
-      : m_planner(planner),
-        m_ground(planner.ground()),
-        m_options(options),
-        m_height(
-            static_cast<int>(std::ceil(planner.options().vehicle.height / m_ground.voxelSize()))) {}
-
-  bool isObstacle(semantic_planning::Column c, int z,
-                  const semantic_planning::Surface* surface) const {
-    if (!surface)
-      return m_options.unknown || m_ground.isOccupied(c, z + m_ground.step() + 1, z + m_height);
-    if (!surface->drivable) return true;
-    return m_options.forbiddenGround && !surface->filled &&
-           m_planner.order().rank(surface->classId) == colored_graph::kForbidden;
+/** Whether a column is an obstacle where the ground that leads there is at a height.
+ * \param surface of the ground there; null: none is known */
+inline bool isObstacle(const semantic_planning::SemanticPlanner& planner,
+                       const ObstacleOptions& options, semantic_planning::Column c, int z,
+                       const semantic_planning::Surface* surface) {
+  const semantic_planning::Ground& ground = planner.ground();
+  if (!surface) {
+    const double height = planner.options().vehicle.height / ground.voxelSize();
+    return options.unknown ||
+           ground.isOccupied(c, z + ground.step() + 1, z + static_cast<int>(std::ceil(height)));
   }
-
- private:
-  const semantic_planning::SemanticPlanner& m_planner;
-  const semantic_planning::Ground& m_ground;
-  const ObstacleOptions& m_options;
-  int m_height;
-};
+  if (!surface->drivable) return true;
+  return options.forbiddenGround && !surface->filled &&
+         planner.order().rank(surface->classId) == colored_graph::kForbidden;
+}
 
 /** The columns around a vehicle, each with the height of the ground that leads there. */
 class Surroundings {

@@ -27,7 +27,6 @@ struct GuideOptions {
 /** Where a path leads: nowhere, to the goal, to a look-out, out of where the vehicle must not be,
  * back along its own track. */
 enum class Target { None, Goal, Frontier, Recovery, Back };
-const strict_files::Choices<Target>& choicesOf(Target);
 /** "none", "goal", "frontier", "recovery" or "back". */
 const char* nameOf(Target target);
 
