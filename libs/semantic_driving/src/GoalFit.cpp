@@ -82,7 +82,10 @@ std::optional<GoalMisfit> findMisfit(const SemanticPlanner& planner, const TPose
                   [&](const Claimed& c) { return ground.surfaces(c.column).empty(); }))
     return {};
   const double far = std::hypot(goal.x - from.x, goal.y - from.y) + claim.back().distance;
-  const Surroundings heights(ground, from, ground.keyOf(z), far + ground.voxelSize());
+  const Column center = ground.columnAt(from.x, from.y);
+  const int reach = static_cast<int>(std::ceil(far / ground.voxelSize())) + 1;
+  const Surroundings heights(ground, ColumnRectangle::around(center, reach), center,
+                             ground.keyOf(z));
   ObstacleOptions all, things;
   things.forbiddenGround = planner.options().ground.keepOff;
   for (const auto& [distance, c, isUnderWheels] : claim) {

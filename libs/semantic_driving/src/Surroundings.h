@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "GroundFlood.h"
@@ -31,35 +30,27 @@ inline bool isObstacle(const semantic_planning::SemanticPlanner& planner,
 /** The columns around a vehicle, each with the height of the ground that leads there. */
 class Surroundings {
  public:
-  Surroundings(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& pose, int z,
-               double radius)
-      : Surroundings(ground, ground.columnAt(pose.x, pose.y), z,
-                     static_cast<int>(std::ceil(radius / ground.voxelSize()))) {}
-  /** \param center in the rectangle, all of which is within the radius */
+  /** \param center in the rectangle, on ground of height z (key) */
   Surroundings(const semantic_planning::Ground& ground, const ColumnRectangle& columns,
                semantic_planning::Column center, int z)
       : m_ground(ground),
         m_columns(columns),
         m_center(center),
-        m_reach2(std::numeric_limits<int>::max()),
         m_heights(columns.size(), kNotReached) {
     spread(z);
   }
 
   bool contains(semantic_planning::Column c) const { return m_columns.contains(c); }
-  bool isWithinRadius(semantic_planning::Column c) const {
-    const int x = c.x - m_center.x, y = c.y - m_center.y;
-    return x * x + y * y <= m_reach2;
-  }
   /** Key of the ground's height there, or that leads there. \param c contained */
   int height(semantic_planning::Column c) const { return m_heights[m_columns.indexOf(c)]; }
 
   /** f(column, key of the ground's height, surface there or null) */
   template <class F>
   void forEach(F f) const {
-    for (std::size_t i = 0; i < m_heights.size(); ++i)
-      if (const semantic_planning::Column c = m_columns.columnOf(i); isWithinRadius(c))
-        f(c, m_heights[i], m_ground.near(c, m_heights[i], m_ground.step()));
+    for (std::size_t i = 0; i < m_heights.size(); ++i) {
+      const semantic_planning::Column c = m_columns.columnOf(i);
+      f(c, m_heights[i], m_ground.near(c, m_heights[i], m_ground.step()));
+    }
   }
 
  private:
@@ -70,16 +61,6 @@ class Surroundings {
     semantic_planning::Column column;
     int z;  ///< of the ground there, or that leads there
   };
-
-  Surroundings(const semantic_planning::Ground& ground, semantic_planning::Column center, int z,
-               int reach)
-      : m_ground(ground),
-        m_columns(ColumnRectangle::around(center, reach)),
-        m_center(center),
-        m_reach2(reach * reach),
-        m_heights(m_columns.size(), kNotReached) {
-    spread(z);
-  }
 
   /** Over ground first, so that a detour over it counts for more than a jump over a gap. */
   void spread(int z) {
@@ -104,7 +85,6 @@ class Surroundings {
   const semantic_planning::Ground& m_ground;
   const ColumnRectangle m_columns;
   semantic_planning::Column m_center;
-  int m_reach2;  ///< squared radius, columns
   std::vector<int> m_heights;
 };
 
