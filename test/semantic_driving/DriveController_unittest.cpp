@@ -73,7 +73,7 @@ TEST(DriveController, PassesAPersonByTheReactiveNavigatorWithoutANewPath) {
   int reactiveSteps = 0;
   drive.run([&](const ObstaclePoints& seen, double seconds) {
     const DriveCommand command = controller.step(drive.state(), seen, 0, seconds);
-    reactiveSteps += controller.driver() == DriveController::Driver::Reactive ? 1 : 0;
+    reactiveSteps += controller.isReactive() ? 1 : 0;
     return command;
   });
   EXPECT_FALSE(drive.collided());

@@ -82,14 +82,6 @@ TEST(DriveOptions, TheWayToRestIsLongEnoughForSlowVehicles) {
     EXPECT_LT(overshoot(acceleration), 0.1) << acceleration;
 }
 
-TEST(DriveOptions, ComesToRestMoreGentlyThanTheTrackerBrakesAtAnyAcceleration) {
-  for (const double acceleration : {0.05, 0.3, 0.74, 0.8, 5.0}) {
-    DriveOptions drive;
-    drive.maxAcceleration = acceleration;
-    EXPECT_GT(restingWay(1, drive), 1 / (2 * drive.braking())) << acceleration;
-  }
-}
-
 TEST(DriveOptions, HoweverFastAVehicleIsItStandsBeforeItIsBlind) {
   for (const double maxSpeed : {0.5, 1.2, 5.0}) {
     DriveOptions options;

@@ -156,15 +156,6 @@ TEST_F(OfAPath, TellsThePriceOfDrivingTheRest) {
   EXPECT_NEAR(judge(DrivePath(points), 4.5).price, 0.5 * vehicle.reverseWeight, 1e-6);
 }
 
-TEST(PathJudgment, AChangeOfGearOutweighsSomeMeters) {
-  PathJudgment shunting = judged(8, 0), ahead = judged(9, 0);
-  shunting.price = 8 + 2.5 + 1.5;
-  EXPECT_TRUE(ahead.isClearlyBetterThan(shunting));
-  EXPECT_FALSE(shunting.isClearlyBetterThan(ahead));
-  ahead.price = 11.4;  // less than a tenth less
-  EXPECT_FALSE(ahead.isClearlyBetterThan(shunting));
-}
-
 TEST(PathJudgment, AFewMetersOfAWorseClassDoNotOutweighALongStretchBackwards) {
   PathJudgment far = judged(12, 0), ahead = judged(9, 3);
   far.longestBackwards = 9;
@@ -210,10 +201,7 @@ TEST(DrivenTrack, LeadsBackTheWayTheVehicleCame) {
   const DrivePath back(track.back());
   EXPECT_NEAR(back.length(), kRadius, 0.2);
   EXPECT_NEAR(back.stretchEnd(0.1), back.length(), 1e-9);
-  for (double s = 0; s < back.length() - 0.2; s += 0.1) {
-    EXPECT_FALSE(back.at(s).forward);
-    EXPECT_NEAR(back.at(s).curvature, 1 / kRadius, 0.01);
-  }
+  for (double s = 0; s < back.length() - 0.2; s += 0.1) EXPECT_FALSE(back.at(s).forward);
   EXPECT_NEAR(std::hypot(back.at(2).x, back.at(2).y), 0, 0.1);
 }
 

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "Plain.h"
 #include "Trial.h"
 
@@ -50,24 +48,6 @@ TEST(DriveStudy, TheOracleKnowsWhereAPathLeads) {
   EXPECT_TRUE(free.hasPath) << free.reason;
   EXPECT_NEAR(free.lengthPerClass[synthetic_world::kRoad], 11, 0.5);
   EXPECT_FALSE(solved(world, {-8, 0, 0}, {10, 0, 0}).hasPath);
-}
-
-TEST(DriveStudy, DrawsTasksWithClearanceAroundThem) {
-  const World world = withYard();
-  const auto order = syntheticOrder();
-  const auto vehicle = smallConfig().planner.vehicle;
-  TaskOptions options;
-  options.nearest = 5;
-  TaskDraw draw(world, order, vehicle, options);
-  for (int i = 0; i < 20; ++i) {
-    const Task task = draw.next();
-    const double distance = std::hypot(task.goal.x - task.start.x, task.goal.y - task.start.y);
-    EXPECT_GE(distance, options.nearest);
-    EXPECT_LE(distance, options.farthest);
-    const auto footprint = simulated_drive::trueFootprint(vehicle);
-    EXPECT_GT(world.clearance(footprint, task.goal.x, task.goal.y, task.goal.phi),
-              options.clearance);
-  }
 }
 
 TEST(DriveStudy, TellsFaults) {

@@ -11,7 +11,6 @@
 #include "simulated_drive/DriveLoop.h"
 
 using namespace plain_drives;
-using semantic_driving::DriveController;
 
 namespace {
 
@@ -205,9 +204,8 @@ TEST(Drives, LeaveAPersonToTheReactiveNavigatorWithoutANewPlan) {
   EXPECT_EQ(record.collisions, 0);
   EXPECT_EQ(record.replans, 0);
   EXPECT_LT(record.leastClearance, 1);
-  EXPECT_TRUE(std::any_of(record.rows.begin(), record.rows.end(), [](const DriveRow& row) {
-    return row.driver == DriveController::Driver::Reactive;
-  }));
+  EXPECT_TRUE(std::any_of(record.rows.begin(), record.rows.end(),
+                          [](const DriveRow& row) { return row.isReactive; }));
 }
 
 TEST(Drives, TakeAnotherWayWhenTheRoadIsBlocked) {

@@ -94,14 +94,6 @@ TEST_F(ViewStrategies, lookForWhatMattersWhereItIsLikely) {
   EXPECT_GT(east->promise, 0);
 }
 
-TEST_F(ViewStrategies, withoutALearnedPriorWeightsBringNothing) {
-  const auto road = firstView(relevant(PaintedWorld::Road), false);
-  const auto grass = firstView(relevant(PaintedWorld::Grass), false);
-  ASSERT_TRUE(road && grass);
-  EXPECT_NEAR(road->way, grass->way, 1e-9);
-  EXPECT_NEAR(road->promise, grass->promise, 0.2 * road->promise);
-}
-
 TEST_F(ViewStrategies, doNotDriveForWhatIsOnlyToBeIgnored) {
   EXPECT_FALSE(firstView(weightsOf(
       tree_abstraction::irrelevant("ignored", 1, {static_cast<int>(PaintedWorld::Road)}))));

@@ -274,19 +274,6 @@ TEST(GainField, promisesNothingOfWhatBeamsPassedForWhoKnowsAir) {
   EXPECT_EQ(gainOfHeading(gains, 0, 360), 0);
 }
 
-TEST(GainField, promisesLessTheMoreWasSeen) {
-  Scene s;
-  const ViewTemplate view({3, -60, -25, 360}, kVoxel);
-  const auto promise = [&] {
-    s.field.update();
-    return gainOfHeading(s.field.sweep(view, s.prior, keyAt(s.map, 0, 0, 1)), 0, 360);
-  };
-  insertFloor(s.map, kRoad, 4);
-  const double once = promise();
-  for (int i = 0; i < 6; ++i) insertFloor(s.map, kRoad, 4);
-  EXPECT_GT(once, 3 * promise());
-}
-
 TEST(GainField, keepsTilesThatAreTheSameThroughoutOnce) {
   Scene s;
   LabeledCloud cloud;

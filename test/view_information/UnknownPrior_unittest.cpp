@@ -53,16 +53,6 @@ TEST(UnknownPrior, withoutALearnedOneWeightsBringNothing) {
   EXPECT_EQ(a.patch(0, 0).above.gain, b.patch(0, 0).above.gain);
 }
 
-TEST(UnknownPrior, thatIsLearnedLooksForWhatMattersWhereItIsLikely) {
-  TwoSides road(kRoad), grass(kGrass);
-  LearnedPrior priorOfRoad(road.map, road.question), priorOfGrass(grass.map, grass.question);
-  road.teach(priorOfRoad), grass.teach(priorOfGrass);
-  const double east = road.eastBeforeWest(priorOfRoad);
-  const double west = -grass.eastBeforeWest(priorOfGrass);
-  EXPECT_GT(east, 0.5);
-  EXPECT_NEAR(east, west, 0.1 * east);
-}
-
 TEST(UnknownPrior, groundThatIsRelevantForSureIsWorthMost) {
   TwoSides sides(kRoad);
   LearnedPrior prior(sides.map, sides.question);

@@ -311,7 +311,7 @@ void DriveLoop::addRow() {
   row.classId = m_world.groundClass(row.pose.x, row.pose.y);
   row.clearance = m_world.clearance(m_footprint, row.pose.x, row.pose.y, row.pose.phi);
   row.target = guide().target();
-  row.driver = controller().driver();
+  row.isReactive = controller().isReactive();
   const PathTracker& tracker = controller().tracker();
   if (!tracker.path().empty()) row.offset = tracker.offset();
   std::optional<semantic_types::ClassId> planned;

@@ -124,8 +124,8 @@ std::string toCsv(const DriveRecord& record) {
     out << r.time << ',' << r.pose.x << ',' << r.pose.y << ',' << r.z << ','
         << r.pose.phi * 180 / M_PI << ',' << r.speed << ',' << r.turn << ','
         << nameOfClass(r.classId) << ',' << r.clearance << ',' << r.offset << ','
-        << nameOf(r.target) << ',' << nameOf(r.driver) << ',' << r.believed.x << ',' << r.believed.y
-        << ',' << r.believed.phi * 180 / M_PI << '\n';
+        << nameOf(r.target) << ',' << (r.isReactive ? "reactive" : "path") << ',' << r.believed.x
+        << ',' << r.believed.y << ',' << r.believed.phi * 180 / M_PI << '\n';
   }
   return out.str();
 }

@@ -24,8 +24,7 @@ struct DriveRow {
   double offset = 0;                    ///< m from the path
   double bend = 0;                      ///< of the path there, 1/m
   semantic_driving::Target target = semantic_driving::Target::None;
-  semantic_driving::DriveController::Driver driver =
-      semantic_driving::DriveController::Driver::Tracker;
+  bool isReactive = false;  ///< MRPT's navigator steers
 };
 
 /** Explored: it looked around, and that is over. Nearest: it is at the pose nearest to the goal

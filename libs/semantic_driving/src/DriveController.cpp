@@ -30,16 +30,6 @@ TPose2D after(const TPose2D& pose, const DriveCommand& c, double seconds) {
 
 }  // namespace
 
-const strict_files::Choices<DriveController::Driver>& choicesOf(DriveController::Driver) {
-  static const strict_files::Choices<DriveController::Driver> choices = {
-      {"path", DriveController::Driver::Tracker}, {"reactive", DriveController::Driver::Reactive}};
-  return choices;
-}
-
-const char* nameOf(DriveController::Driver driver) {
-  return strict_files::nameIn(choicesOf(driver), driver);
-}
-
 DriveController::DriveController(const DriveOptions& options,
                                  const ReactiveNavigator::Options& reactive)
     : m_tracker(options, reactive.footprint), m_reactive(reactive, options) {}
@@ -55,13 +45,13 @@ DriveCommand DriveController::step(const DriveState& state, const ObstaclePoints
   m_track.add(state.pose);
   m_tracker.locate(state);
   const double limit = m_tracker.options().speedFor(sensorAge);
-  const bool reactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles);
-  m_driver = reactive ? Driver::Reactive : Driver::Tracker;
-  if (!reactive) m_reactiveFrom = -1;
-  DriveCommand wanted = besideMovers(state,
-                                     reactive ? driveReactively(state, obstacles, limit, seconds)
-                                              : m_tracker.command(state, obstacles, limit),
-                                     movers);
+  m_isReactive = seconds >= m_reactiveAgain && wantsReactive(state, obstacles);
+  if (!m_isReactive) m_reactiveFrom = -1;
+  DriveCommand wanted =
+      besideMovers(state,
+                   m_isReactive ? driveReactively(state, obstacles, limit, seconds)
+                                : m_tracker.command(state, obstacles, limit),
+                   movers);
   if (room && std::abs(wanted.speed) <= DriveOptions::kSlowest)
     wanted = stepAside(state, m_motion, *room, movers, m_tracker.footprint(), m_tracker.options())
                  .value_or(wanted);
@@ -125,7 +115,7 @@ DriveCommand DriveController::driveReactively(const DriveState& state,
 /** Where it is after some meters: beside its path as now, or on the arc that MRPT chose. */
 std::function<TPose2D(double)> DriveController::wayAhead(const DriveState& state,
                                                          const DriveCommand& wanted) const {
-  if (m_driver == Driver::Reactive)
+  if (m_isReactive)
     return [=](double way) { return after(state.pose, wanted, way / std::abs(wanted.speed)); };
   const DrivePath& path = m_tracker.path();
   const double here = m_tracker.progress(), end = path.stretchEnd(here);

@@ -11,6 +11,7 @@ namespace semantic_driving {
 
 using mrpt::math::TPose2D;
 using namespace semantic_planning;
+using What = Action::What;
 
 namespace {
 
@@ -19,22 +20,11 @@ namespace {
 constexpr double kLeadTime = 1, kLeadDistance = 0.5;
 constexpr double kRestMargin = 0.1;      // m more than coming to rest takes
 constexpr double kShortestShunt = 0.15;  // m; shorter last stretches are not worth a change of gear
-constexpr double kBlind = 2;             // m; sensors may not see the ground nearer than this
 constexpr double kNearestWithin = 5;     // m around a goal that does not fit
 // Searches do so much of their work in a call, as SemanticPlanner::goOn() counts it.
 constexpr std::size_t kWork = 60000;
 
 double distance(const TPose2D& a, const TPose2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
-template <class A>
-bool is(const Action& action) {
-  return std::holds_alternative<A>(action);
-}
-
-bool isQuestion(const Action& action) {
-  return is<SeekGoal>(action) || is<SeekFrontier>(action) || is<SeekRecovery>(action) ||
-         is<SeekBack>(action) || is<SeekNearest>(action);
-}
 
 /** A pose as command lines have it. */
 std::string textOf(const TPose2D& pose) {
@@ -71,7 +61,7 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
   if (m_open && isPast(m_open->from, now)) m_open.reset();
   Transition next =
       m_open ? Transition{m_state, m_question} : transition(m_state, look(now), m_options);
-  while (isQuestion(next.action)) {
+  while (next.action.isQuestion()) {
     const std::optional<Answer> answer = this->answer(next.action, now);
     m_state = next.state;
     m_question = next.action;
@@ -80,7 +70,7 @@ void DriveGuide::update(const DriveState& state, double z, DriveController& driv
     next = transition(m_state, *answer);
   }
   m_state = next.state;
-  apply(next.action, now, drive);
+  apply(next.action.what, now, drive);
   if (gaveUp() && !gaveUpBefore && explored() > 0)
     m_reason += "; frontiers explored: " + std::to_string(explored());
 }
@@ -131,20 +121,20 @@ Look DriveGuide::look(const Situation& now) const {
   look.nearGoal = isNearGoal(now.state);
   look.blocked = !look.finished && !m_check.judge(tracker.path(), tracker.progress()).isFree();
   look.mayPlan = mayStand(now.state.pose, now.z);
-  const Departure ahead = departureOf(now, From::Ahead);
+  const Departure ahead = departureOf(now, true);
   look.mayPlanAhead = mayStand(ahead.pose, ahead.z);
   look.mayStandAtGoal = mayStand(m_aim, {});
   look.goalMisfits = m_misfit || (m_explorer.exhausted() && !look.mayStandAtGoal);
   return look;
 }
 
-DriveGuide::Departure DriveGuide::departureOf(const Situation& now, From from) const {
+DriveGuide::Departure DriveGuide::departureOf(const Situation& now, bool ahead) const {
   const PathTracker& tracker = now.drive.tracker();
-  if (from == From::Here || tracker.finished()) return {now.state.pose, now.z, 0, false};
+  if (!ahead || tracker.finished()) return {now.state.pose, now.z, 0, false};
   const DrivePath& path = tracker.path();
   const double here = tracker.progress();
-  const double ahead = std::max(kLeadDistance, std::abs(now.state.speed) * kLeadTime);
-  const double there = std::min(path.stretchEnd(here), here + ahead);
+  const double lead = std::max(kLeadDistance, std::abs(now.state.speed) * kLeadTime);
+  const double there = std::min(path.stretchEnd(here), here + lead);
   return {poseOf(path.at(there)), path.at(there).z, there, true};
 }
 
@@ -173,35 +163,31 @@ DrivePath DriveGuide::untilRest(const Situation& now) const {
   return path.part(here, std::min(there, path.stretchEnd(here)));
 }
 
-void DriveGuide::apply(const Action& action, const Situation& now, DriveController& drive) {
-  if (is<Follow>(action)) drive.setPath(std::move(*m_found));
-  if (is<ComeToRest>(action)) drive.setPath(untilRest(now));
-  if (is<Stop>(action)) drive.setPath({});
-  m_explorer.end(is<Follow>(action));
+void DriveGuide::apply(What what, const Situation& now, DriveController& drive) {
+  if (what == What::Follow) drive.setPath(std::move(*m_found));
+  if (what == What::ComeToRest) drive.setPath(untilRest(now));
+  if (what == What::Stop) drive.setPath({});
+  m_explorer.end(what == What::Follow);
   m_found.reset();
 }
 
 std::optional<Answer> DriveGuide::answer(const Action& question, const Situation& now) {
   Answer answer{question, now.seconds};
-  if (const auto* goal = std::get_if<SeekGoal>(&question)) {
-    if (!toGoal(goal->from, now)) return {};
-    if (goal->from == From::Ahead && goal->replaces) answer.better = improves(m_open->from, now);
-    answer.empty = m_found && m_found->empty();
-  } else if (const auto* frontier = std::get_if<SeekFrontier>(&question)) {
-    if (!toFrontier(*frontier, now)) return {};
-    answer.enclosed = m_open->enclosed;
-    answer.empty = m_found && m_found->empty();
-    answer.shunts = m_found && !m_found->empty() && m_found->stretchEnd(0) < m_found->length();
-    answer.early = isEarly(now);
-  } else if (const auto* way = std::get_if<SeekRecovery>(&question)) {
-    m_found = recovery(now, way->blind);
-  } else if (is<SeekNearest>(question)) {
+  if (question.what == What::SeekNearest) {
     answer.found = aimsElsewhere(now);
     return answer;
-  } else {
-    m_found = back(now);
   }
+  if (question.what == What::SeekGoal && !toGoal(question.ahead, now)) return {};
+  if (question.what == What::SeekFrontier && !toFrontier(question, now)) return {};
+  if (question.what == What::SeekRecovery) m_found = recovery(now);
+  if (question.what == What::SeekBack) m_found = back(now);
+  if (question.what == What::SeekGoal && question.ahead && question.replaces)
+    answer.better = improves(m_open->from, now);
   answer.found = m_found.has_value();
+  answer.empty = m_found && m_found->empty();
+  answer.shunts = m_found && !m_found->empty() && m_found->stretchEnd(0) < m_found->length();
+  answer.early = isEarly(now);
+  answer.enclosed = m_open && m_open->enclosed;
   return answer;
 }
 
@@ -239,9 +225,9 @@ bool DriveGuide::isBetter(const Situation& now) const {
 }
 
 /** \return whether it is known if there is a path */
-bool DriveGuide::toGoal(From from, const Situation& now) {
+bool DriveGuide::toGoal(bool ahead, const Situation& now) {
   if (!m_open) {
-    m_open = Open{departureOf(now, from)};
+    m_open = Open{departureOf(now, ahead)};
     m_planner.begin(m_open->from.pose, m_planned ? std::nullopt : std::optional(m_aim),
                     m_open->from.z);
     m_planned = m_planner.hasPlanned();
@@ -262,9 +248,9 @@ bool DriveGuide::toGoal(From from, const Situation& now) {
 }
 
 /** \return whether it is known if there is a path */
-bool DriveGuide::toFrontier(const SeekFrontier& question, const Situation& now) {
+bool DriveGuide::toFrontier(const Action& question, const Situation& now) {
   if (!m_open) {
-    m_open = Open{departureOf(now, question.from)};
+    m_open = Open{departureOf(now, question.ahead)};
     m_explorer.begin(m_open->from.pose, m_open->from.z, m_aim);
   }
   const auto joinedTo = [&](DrivePath path) { return joined(m_open->from, now, std::move(path)); };
@@ -282,10 +268,10 @@ bool DriveGuide::toFrontier(const SeekFrontier& question, const Situation& now) 
   return true;
 }
 
-std::optional<DrivePath> DriveGuide::recovery(const Situation& now, bool blind) {
-  DrivePath path = findRecovery(m_planner, now.state.pose, now.z, blind ? kBlind : 0);
+std::optional<DrivePath> DriveGuide::recovery(const Situation& now) {
+  DrivePath path = findRecovery(m_planner, now.state.pose, now.z);
   if (!path.empty()) return path;
-  if (!blind) m_reason = "the vehicle is where it must not be, and finds no way out";
+  m_reason = "the vehicle is where it must not be, and finds no way out";
   return {};
 }
 
@@ -309,7 +295,7 @@ bool DriveGuide::aimsElsewhere(const Situation& now) {
 }
 
 /** Along the vehicle's own track to where it can plan, and a little on, for what is close may be
- * out of its sensors' sight. */
+ * out of its sensors' sight. Without a track, out of what they do not see. */
 std::optional<DrivePath> DriveGuide::back(const Situation& now) const {
   std::vector<PathPoint> points = now.drive.track().back();
   double z = now.z;
@@ -319,13 +305,15 @@ std::optional<DrivePath> DriveGuide::back(const Situation& now) const {
     p.z = z;
   }
   const DrivePath track(std::move(points));
-  constexpr double kStep = 0.2, kBeyond = 1;  // m
+  constexpr double kStep = 0.2, kBeyond = 1, kBlind = 2;  // m
   for (double s = kStep; s < track.length(); s += kStep) {
     const PathPoint p = track.at(s);
     if (m_planner.check(poseOf(p), p.z) == PlanStatus::Found)
       return track.part(0, std::min(track.length(), s + kBeyond));
   }
-  return {};
+  DrivePath out;
+  if (track.length() < kStep) out = findRecovery(m_planner, now.state.pose, now.z, kBlind);
+  return out.empty() ? std::nullopt : std::optional(out);
 }
 
 }  // namespace semantic_driving

@@ -132,13 +132,6 @@ bool isSame(const TPose2D& a, const TPose2D& b) {
   return apart(a, b) < kSpacing && std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < kSameHeading;
 }
 
-/** The steering's curvature from one place to the other, 1/m; the gear does not matter. */
-double curvature(const TPose2D& a, const TPose2D& b) {
-  const double turned = mrpt::math::wrapToPi(b.phi - a.phi), heading = a.phi + turned / 2;
-  const double way = (b.x - a.x) * std::cos(heading) + (b.y - a.y) * std::sin(heading);
-  return std::abs(way) > kSpacing / 2 ? turned / way : 0;
-}
-
 }  // namespace
 
 void DrivenTrack::add(const TPose2D& pose) {
@@ -153,7 +146,6 @@ std::vector<PathPoint> DrivenTrack::back() const {
   for (auto pose = m_poses.rbegin(); pose != m_poses.rend(); ++pose) {
     PathPoint p;
     p.x = pose->x, p.y = pose->y, p.heading = pose->phi;
-    if (pose + 1 != m_poses.rend()) p.curvature = curvature(*pose, *(pose + 1));
     points.push_back(p);
   }
   return points;

@@ -112,8 +112,7 @@ class FrontierSearch {
         m_flood(flood),
         m_region(region),
         m_from(from),
-        m_goal(goal),
-        m_answers(flood.columns().size()) {
+        m_goal(goal) {
     flood.forEach([&](Column c, const GroundFlood::Place& place) {
       if ((c.x + c.y) % 2 == 0) lookAround(c, place.z);
     });
@@ -178,20 +177,10 @@ class FrontierSearch {
     return std::hypot(x - m_from.x, y - m_from.y) + std::hypot(x - m_goal.x, y - m_goal.y);
   }
 
-  /** Asked from many places around: the last answer is kept. */
-  bool isUnknown(Column c, int z) {
-    Answer& last = m_answers[m_flood.columns().indexOf(c)];
-    if (last.z != z) last = {z, findUnknown(c, z)};
-    return last.unknown;
-  }
-
-  bool findUnknown(Column c, int z) const {
+  bool isUnknown(Column c, int z) const {
     if (!m_ground.surfaces(c).empty()) return false;
     for (int k = z - 1; k <= z; ++k)
-      if (m_ground.map().search(octomap::OcTreeKey(static_cast<octomap::key_type>(c.x),
-                                                   static_cast<octomap::key_type>(c.y),
-                                                   static_cast<octomap::key_type>(k))))
-        return false;
+      if (m_ground.map().search(semantic_octree::octomapKey(c.x, c.y, k))) return false;
     return true;
   }
 
@@ -227,11 +216,6 @@ class FrontierSearch {
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
   const TPose2D m_from, m_goal;
-  struct Answer {
-    int z = -1;
-    bool unknown = false;
-  };
-  std::vector<Answer> m_answers;  ///< of isUnknown(), by column
   std::vector<View> m_views;
 };
 

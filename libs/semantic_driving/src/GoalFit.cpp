@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "GroundFlood.h"
 #include "Surroundings.h"
@@ -18,12 +19,6 @@ using namespace semantic_planning;
 
 namespace {
 
-/** Squared, in columns: from nearest side to nearest side, as Surface::clearance2. */
-int clearance2(Column a, Column b) {
-  const int dx = std::max(0, std::abs(a.x - b.x) - 1), dy = std::max(0, std::abs(a.y - b.y) - 1);
-  return dx * dx + dy * dy;
-}
-
 /** f(column) for the columns at most `reach` away along x and along y. */
 template <class F>
 void forSquare(Column center, int reach, F f) {
@@ -31,66 +26,50 @@ void forSquare(Column center, int reach, F f) {
     for (int x = -reach; x <= reach; ++x) f(Column{center.x + x, center.y + y});
 }
 
-template <class F>
-bool anyInSquare(Column center, int reach, F f) {
-  bool any = false;
-  forSquare(center, reach, [&](Column c) { any = any || f(c); });
-  return any;
-}
-
-/** The columns that a vehicle at the goal must have for itself. */
-class Claim {
- public:
-  Claim(const SemanticPlanner& planner, const TPose2D& goal)
-      : m_ground(planner.ground()),
-        m_checker(m_ground, planner.options().vehicle, planner.order()),
-        m_goal(goal) {}
-
-  /** f(column, only wheels) */
-  template <class F>
-  void forEach(F f) const {
-    for (const CollisionChecker::CheckedDisc& d : m_checker.discs()) {
-      const Column center = at(d.disc.x, d.disc.y);
-      forSquare(center, static_cast<int>(std::ceil(std::sqrt(d.needed2))), [&](Column c) {
-        if (clearance2(center, c) < d.needed2) f(c, false);
-      });
-    }
-    for (const double y : m_checker.wheels()) f(at(0, y), true);
-  }
-  double reach() const {
-    double reach = 0;
-    forEach([&](Column c, bool) { reach = std::max(reach, distance(c)); });
-    return reach;
-  }
-  /** From the goal's place, meters. */
-  double distance(Column c) const {
-    return std::hypot(m_ground.centerOf(c.x) - m_goal.x, m_ground.centerOf(c.y) - m_goal.y);
-  }
-  bool isSeen() const {
-    bool any = false;
-    forEach([&](Column c, bool) { any = any || !m_ground.surfaces(c).empty(); });
-    return any;
-  }
-
- private:
-  Column at(double x, double y) const {
-    const TPoint2D p = m_goal.composePoint({x, y});
-    return m_ground.columnAt(p.x, p.y);
-  }
-
-  const Ground& m_ground;
-  CollisionChecker m_checker;
-  const TPose2D& m_goal;
+/** A column that a vehicle at a goal must have for itself. */
+struct Claimed {
+  double distance;  ///< from the goal, m
+  Column column;
+  bool isUnderWheels;
 };
+
+/** Nearest first: what CollisionChecker asks for at a pose. */
+std::vector<Claimed> claimOf(const SemanticPlanner& planner, const TPose2D& goal) {
+  const Ground& ground = planner.ground();
+  const CollisionChecker checker(ground, planner.options().vehicle, planner.order());
+  std::vector<Claimed> claim;
+  const auto at = [&](double x, double y) {
+    const TPoint2D p = goal.composePoint({x, y});
+    return ground.columnAt(p.x, p.y);
+  };
+  const auto add = [&](Column c, bool isUnderWheels) {
+    const double x = ground.centerOf(c.x) - goal.x, y = ground.centerOf(c.y) - goal.y;
+    claim.push_back({std::hypot(x, y), c, isUnderWheels});
+  };
+  for (const CollisionChecker::CheckedDisc& d : checker.discs()) {
+    const Column center = at(d.disc.x, d.disc.y);
+    forSquare(center, static_cast<int>(std::ceil(std::sqrt(d.needed2))), [&](Column c) {
+      const int x = std::max(0, std::abs(c.x - center.x) - 1),
+                y = std::max(0, std::abs(c.y - center.y) - 1);  // as Surface::clearance2
+      if (x * x + y * y < d.needed2) add(c, false);
+    });
+  }
+  for (const double y : checker.wheels()) add(at(0, y), true);
+  std::stable_sort(claim.begin(), claim.end(),
+                   [](const Claimed& a, const Claimed& b) { return a.distance < b.distance; });
+  return claim;
+}
 
 /** Ground next to it was seen, at the height where it is in the way. */
 bool isAtSeenGround(const Ground& ground, const Surroundings& heights, Column c) {
   constexpr double kNext = 0.6;  // m
-  return anyInSquare(c, static_cast<int>(kNext / ground.voxelSize()), [&](Column near) {
-    if (!heights.contains(near)) return false;
+  bool isAny = false;
+  forSquare(c, static_cast<int>(kNext / ground.voxelSize()), [&](Column near) {
+    if (isAny || !heights.contains(near)) return;
     const Surface* s = ground.near(near, heights.height(c), ground.step());
-    return s && !s->filled;
+    isAny = s && !s->filled;
   });
+  return isAny;
 }
 
 }  // namespace
@@ -98,30 +77,29 @@ bool isAtSeenGround(const Ground& ground, const Surroundings& heights, Column c)
 std::optional<GoalMisfit> findMisfit(const SemanticPlanner& planner, const TPose2D& from, double z,
                                      const TPose2D& goal) {
   const Ground& ground = planner.ground();
-  const Claim claim(planner, goal);
-  if (!claim.isSeen()) return {};
-  const double far = std::hypot(goal.x - from.x, goal.y - from.y) + claim.reach();
-  const Surroundings heights(ground, from, ground.keyOf(z), far + ground.voxelSize());
+  const std::vector<Claimed> claim = claimOf(planner, goal);
+  if (std::all_of(claim.begin(), claim.end(),
+                  [&](const Claimed& c) { return ground.surfaces(c.column).empty(); }))
+    return {};
+  const double far = std::hypot(goal.x - from.x, goal.y - from.y) + claim.back().distance;
+  const Column center = ground.columnAt(from.x, from.y);
+  const int reach = static_cast<int>(std::ceil(far / ground.voxelSize())) + 1;
+  const Surroundings heights(ground, ColumnRectangle::around(center, reach), center,
+                             ground.keyOf(z));
   ObstacleOptions all, things;
-  all.forbiddenGround = true;
   things.forbiddenGround = planner.options().ground.keepOff;
-  const ObstacleFinder belowWheels(planner, all), around(planner, things);
-  std::optional<GoalMisfit> misfit;
-  double nearest = std::numeric_limits<double>::infinity();
-  claim.forEach([&](Column c, bool wheels) {
-    const double distance = claim.distance(c);
-    if (distance >= nearest || !heights.contains(c)) return;
+  for (const auto& [distance, c, isUnderWheels] : claim) {
+    if (!heights.contains(c)) continue;
     const int height = heights.height(c);
     const Surface* s = ground.near(c, height, ground.step());
-    if (s && s->filled) return;  // as steep as it may be, nobody saw it
-    if (!(wheels ? belowWheels : around).isObstacle(c, height, s)) return;
-    if (!isAtSeenGround(ground, heights, c)) return;
-    nearest = distance;
+    if (s && s->filled) continue;  // as steep as it may be, nobody saw it
+    if (!isObstacle(planner, isUnderWheels ? all : things, c, height, s)) continue;
+    if (!isAtSeenGround(ground, heights, c)) continue;
     const TPoint2D at{ground.centerOf(c.x), ground.centerOf(c.y)};
     const auto top = ground.find(at.x, at.y, ground.centerOf(height));
-    misfit = GoalMisfit{at, top ? top->surface.classId : semantic_types::kNoClass};
-  });
-  return misfit;
+    return GoalMisfit{at, top ? top->surface.classId : semantic_types::kNoClass};
+  }
+  return {};
 }
 
 std::optional<TPose2D> nearestFit(const SemanticPlanner& planner, const TPose2D& from, double z,

@@ -47,12 +47,11 @@ void GoalRegion::markObstacles(const SemanticPlanner& planner, const TPose2D& fr
   const VehicleOptions& vehicle = planner.options().vehicle;
   const double radius = (vehicle.footprint.inscribedRadius() + vehicle.clearance) / m_voxel;
   const ObstacleOptions options;
-  const ObstacleFinder finder(planner, options);
   const Surroundings heights(ground, m_columns, ground.columnAt(from.x, from.y), ground.keyOf(z));
   Slices::count(m_columns.size() / 10);
   heights.forEach([&](Column c, int height, const Surface* surface) {
     if (c.x == m_columns.low().x) Slices::count(static_cast<std::size_t>(m_columns.width() / 4));
-    if (!finder.isObstacle(c, height, surface)) return;
+    if (!semantic_driving::isObstacle(planner, options, c, height, surface)) return;
     m_marks[m_columns.indexOf(c)] |= kObstacle;
     forDisc(c, std::max(0.0, radius - kLess), [this](Column near, double) {
       if (m_columns.contains(near)) m_marks[m_columns.indexOf(near)] |= kKept;
@@ -74,12 +73,13 @@ void GoalRegion::startOutside(const Ground& ground, const TPose2D& goal) {
   const Column c =
       ground.columnAt(std::clamp(goal.x, -kFar, kFar), std::clamp(goal.y, -kFar, kFar));
   std::vector<std::pair<double, Column>> seen;
-  m_columns.forRim([&](Column rim) {
-    if (!m_columns.faces(rim, c)) return;
+  for (std::size_t i = 0; i < m_columns.size(); ++i) {
+    const Column rim = m_columns.columnOf(i);
+    if (!m_columns.faces(rim, c)) continue;
     const auto [less, more] = std::minmax(
         {std::abs(ground.centerOf(rim.x) - goal.x), std::abs(ground.centerOf(rim.y) - goal.y)});
     seen.emplace_back(more + (std::sqrt(2.0) - 1) * less, rim);
-  });
+  }
   m_first = std::min_element(seen.begin(), seen.end())->first;
   for (const auto& [way, rim] : seen) offer(rim, way);
 }

@@ -50,12 +50,6 @@ class ColumnRectangle {
   Column columnOf(std::size_t i) const {
     return {m_low.x + static_cast<int>(i) % m_width, m_low.y + static_cast<int>(i) / m_width};
   }
-  /** f(column) for those at the rim. */
-  template <class F>
-  void forRim(F f) const {
-    for (int x = m_low.x; x <= m_high.x; ++x) f(Column{x, m_low.y}), f(Column{x, m_high.y});
-    for (int y = m_low.y + 1; y < m_high.y; ++y) f(Column{m_low.x, y}), f(Column{m_high.x, y});
-  }
 
  private:
   Column m_low, m_high;

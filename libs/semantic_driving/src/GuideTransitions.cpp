@@ -2,22 +2,15 @@
 
 #include <mrpt/math/wrap2pi.h>
 
-#include <array>
 #include <cmath>
 #include <utility>
 
 namespace semantic_driving {
 
-const strict_files::Choices<Target>& choicesOf(Target) {
-  static const strict_files::Choices<Target> choices = {{"none", Target::None},
-                                                        {"goal", Target::Goal},
-                                                        {"frontier", Target::Frontier},
-                                                        {"recovery", Target::Recovery},
-                                                        {"back", Target::Back}};
-  return choices;
+const char* nameOf(Target target) {
+  static constexpr const char* kNames[] = {"none", "goal", "frontier", "recovery", "back"};
+  return kNames[static_cast<std::size_t>(target)];
 }
-
-const char* nameOf(Target target) { return strict_files::nameIn(choicesOf(target), target); }
 
 namespace {
 
@@ -28,18 +21,7 @@ constexpr double kNearFrontier = 3;  // m before a frontier the next one is look
 // backwards; m/s.
 constexpr double kSlow = 0.2;
 
-template <class A>
-bool does(const GuideState& state) {
-  return std::holds_alternative<A>(state.activity);
-}
-
-/** Where it is kept since when the way is blocked; null if that does not matter. */
-std::optional<double>* blockedSince(Activity& activity) {
-  if (auto* a = std::get_if<ToGoal>(&activity)) return &a->blockedSince;
-  if (auto* a = std::get_if<ToFrontier>(&activity)) return &a->blockedSince;
-  auto* a = std::get_if<Recovering>(&activity);
-  return a && a->blind ? &a->blockedSince : nullptr;
-}
+using What = Action::What;
 
 bool isStuck(const GuideState& state, const Look& look, const GuideOptions& options) {
   return look.stoppedFor >= kStuckAfter && look.seconds - state.changedAt >= options.patience;
@@ -55,14 +37,12 @@ bool goalMisfits(GuideState& state, const Look& look, const GuideOptions& option
 /** The path is at its end, leads where the vehicle need not go any more, or was blocked for long.
  * Notes since when it is blocked. */
 bool mustChange(GuideState& state, const Look& look, const GuideOptions& options) {
-  if (look.finished) return !look.hasPath || !(does<ToGoal>(state) && look.nearGoal);
-  if (const auto* recovering = std::get_if<Recovering>(&state.activity);
-      recovering && !recovering->blind && look.mayPlan)
-    return true;
-  if (auto* since = blockedSince(state.activity)) {
-    if (!look.blocked) since->reset();
-    if (look.blocked && !*since) *since = look.seconds;
-    if (*since && look.seconds - **since >= options.patience) return true;
+  if (look.finished) return !look.hasPath || state.target != Target::Goal || !look.nearGoal;
+  if (state.target == Target::Recovery && look.mayPlan) return true;
+  if (state.target == Target::Goal || state.target == Target::Frontier) {
+    if (!look.blocked) state.blockedSince.reset();
+    if (look.blocked && !state.blockedSince) state.blockedSince = look.seconds;
+    if (look.blocked && look.seconds - *state.blockedSince >= options.patience) return true;
   }
   return isStuck(state, look, options);
 }
@@ -70,131 +50,113 @@ bool mustChange(GuideState& state, const Look& look, const GuideOptions& options
 Transition choose(GuideState state, const Look& look) {
   if (!look.finished && look.speed > kSlow) {
     state.comesToRest = true;
-    return {state, ComeToRest{}};
+    return {state, {What::ComeToRest}};
   }
   state.plannedAt = state.changedAt = look.seconds;
-  if (!look.mayPlan) {
-    state.recoveredBlind = false;
-    return {state, SeekRecovery{false}};
-  }
+  if (!look.mayPlan) return {state, {What::SeekRecovery}};
   const bool replaces = std::exchange(state.comesToRest, false) || !look.finished;
-  return {state, SeekGoal{From::Here, replaces, true}};
+  return {state, {What::SeekGoal, false, replaces, true}};
 }
 
 Transition improve(GuideState state, const Look& look) {
   state.plannedAt = look.seconds;
-  const bool exploring = does<ToFrontier>(state);
+  const bool exploring = state.target == Target::Frontier;
   const bool next = exploring && look.left <= kNearFrontier;
-  if (!look.mayPlanAhead || (exploring && !look.mayStandAtGoal && !next)) return {state, GoOn{}};
-  return {state, SeekGoal{From::Ahead, !exploring, next}};
+  if (!look.mayPlanAhead || (exploring && !look.mayStandAtGoal && !next)) return {state, {}};
+  return {state, {What::SeekGoal, true, !exploring, next}};
 }
 
 /** Takes a path that was found. */
-Transition follow(GuideState state, Activity activity) {
-  state.activity = activity;
-  return {state, Follow{}};
+Transition follow(GuideState state, Target target) {
+  state.target = target;
+  state.pathlessSince.reset();
+  state.blockedSince.reset();
+  return {state, {What::Follow}};
 }
 
-Transition followPlan(GuideState state, Activity activity, bool replaces) {
+Transition followPlan(GuideState state, Target target, bool replaces) {
   state.hasPlanned = true;
   state.timesBack = 0;
-  if (replaces) ++state.replans;
-  return follow(state, activity);
+  state.replans += replaces;
+  return follow(state, target);
 }
 
 Transition fail(GuideState state, double seconds) {
-  const auto* idle = std::get_if<Idle>(&state.activity);
-  const double since = idle && idle->since ? *idle->since : seconds;
-  state.activity = Idle{since};
+  state.target = Target::None;
+  state.blockedSince.reset();
+  state.pathlessSince = state.pathlessSince.value_or(seconds);
   // A goal that does not fit has a patience of its own.
-  if (seconds - since >= kGiveUpAfter && !state.misfitSince) state.activity = GaveUp{};
-  return {state, Stop{}};
+  state.gaveUp = seconds - *state.pathlessSince >= kGiveUpAfter && !state.misfitSince;
+  return {state, {What::Stop}};
 }
 
 Transition goBack(GuideState state, double seconds) {
   if (state.timesBack >= GuideState::kMostTimesBack) return fail(state, seconds);
-  return {state, SeekBack{}};
+  return {state, {What::SeekBack}};
 }
 
-Transition after(GuideState state, const SeekGoal& sought, const Answer& answer) {
-  const bool ahead = sought.from == From::Ahead;
+Transition afterGoal(GuideState state, const Answer& answer) {
+  const auto [what, ahead, replaces, orFrontier, last] = answer.question;
   if (!answer.found) {
-    if (!sought.orFrontier) return {state, GoOn{}};
-    const bool last = state.timesBack >= GuideState::kMostTimesBack;
-    return {state, SeekFrontier{sought.from, sought.replaces, last}};
+    const bool isLast = state.timesBack >= GuideState::kMostTimesBack;
+    if (!orFrontier) return {state, {}};
+    return {state, {What::SeekFrontier, ahead, replaces, false, isLast}};
   }
-  if (ahead && (answer.empty || (sought.replaces && !answer.better))) return {state, GoOn{}};
-  return followPlan(state, ToGoal{}, sought.replaces);
+  if (ahead && (answer.empty || (replaces && !answer.better))) return {state, {}};
+  return followPlan(state, Target::Goal, replaces);
 }
 
-Transition after(GuideState state, const SeekFrontier& sought, const Answer& answer) {
-  const bool ahead = sought.from == From::Ahead;
-  state.enclosed = answer.enclosed;
+Transition afterFrontier(GuideState state, const Answer& answer) {
+  const bool ahead = answer.question.ahead;
   // What is seen until the next look may spare a change of gear.
   const bool waits = answer.empty || (answer.shunts && answer.early);
-  if (answer.found && !(ahead && waits)) return followPlan(state, ToFrontier{}, sought.replaces);
-  if (ahead) return {state, GoOn{}};
+  if (answer.found && !(ahead && waits))
+    return followPlan(state, Target::Frontier, answer.question.replaces);
+  if (ahead) return {state, {}};
   // At the beginning it may stand where its sensors do not see the ground.
-  if (does<Idle>(state) && !state.hasPlanned && !(state.enclosed && state.recoveredBlind)) {
-    state.recoveredBlind = true;
-    return {state, SeekRecovery{true}};
-  }
-  if (state.enclosed) return fail(state, answer.seconds);
-  return goBack(state, answer.seconds);
-}
-
-Transition after(GuideState state, const SeekRecovery& sought, const Answer& answer) {
-  if (answer.found) return follow(state, Recovering{sought.blind, {}});
-  return goBack(state, answer.seconds);
-}
-
-Transition after(GuideState state, const SeekBack&, const Answer& answer) {
-  if (!answer.found) return fail(state, answer.seconds);
-  ++state.timesBack;
-  return follow(state, GoingBack{});
+  const bool begins = !state.hasPlanned && state.timesBack == 0;
+  return answer.enclosed && !begins ? fail(state, answer.seconds) : goBack(state, answer.seconds);
 }
 
 /** After a search for the nearest pose that fits: it is the goal, or there is none. */
-Transition after(GuideState state, const SeekNearest&, const Answer& answer) {
+Transition afterNearest(GuideState state, bool found) {
   state.misfitSince.reset();
-  if (!answer.found) {
-    const bool stands = does<Idle>(state);
-    state.activity = GaveUp{};
-    return {state, stands ? Action(Stop{}) : ComeToRest{}};
-  }
-  if (does<Idle>(state)) return {state, Stop{}};
-  state.activity = ToFrontier{};  // as far as it takes to come to rest
-  state.comesToRest = true;
-  return {state, ComeToRest{}};
-}
-
-/** No question. */
-template <class Other>
-Transition after(GuideState state, const Other&, const Answer&) {
-  return {state, GoOn{}};
+  state.blockedSince.reset();
+  const bool stands = state.target == Target::None;
+  state.gaveUp = !found;
+  state.comesToRest = found && !stands;
+  if (!stands) state.target = found ? Target::Frontier : Target::None;  // till it has come to rest
+  return {state, {stands ? What::Stop : What::ComeToRest}};
 }
 
 }  // namespace
 
-Target GuideState::target() const {
-  static constexpr std::array<Target, std::variant_size_v<Activity>> kTargets = {
-      Target::None, Target::Goal, Target::Frontier, Target::Recovery, Target::Back, Target::None};
-  return kTargets[activity.index()];
-}
-
 Transition transition(GuideState state, const Look& look, const GuideOptions& options) {
-  if (does<GaveUp>(state)) return {state, look.finished ? Action(Stop{}) : GoOn{}};
-  if (goalMisfits(state, look, options)) return {state, SeekNearest{}};
-  if (does<Idle>(state) || mustChange(state, look, options)) return choose(state, look);
-  const auto* blocked = blockedSince(state.activity);
+  if (state.gaveUp) return {state, {look.finished ? What::Stop : What::GoOn}};
+  if (goalMisfits(state, look, options)) return {state, {What::SeekNearest}};
+  if (state.target == Target::None || mustChange(state, look, options)) return choose(state, look);
   const bool soon = look.seconds - state.plannedAt < GuideOptions::kPeriod;
-  if (does<GoingBack>(state) || soon || (blocked && *blocked)) return {state, GoOn{}};
+  if (state.target == Target::Back || soon || state.blockedSince) return {state, {}};
   return improve(state, look);
 }
 
 Transition transition(GuideState state, const Answer& answer) {
-  return std::visit([&](const auto& question) { return after(std::move(state), question, answer); },
-                    answer.question);
+  switch (answer.question.what) {
+    case What::SeekGoal:
+      return afterGoal(state, answer);
+    case What::SeekFrontier:
+      return afterFrontier(state, answer);
+    case What::SeekRecovery:
+      return answer.found ? follow(state, Target::Recovery) : goBack(state, answer.seconds);
+    case What::SeekBack:
+      if (!answer.found) return fail(state, answer.seconds);
+      ++state.timesBack;
+      return follow(state, Target::Back);
+    case What::SeekNearest:
+      return afterNearest(state, answer.found);
+    default:
+      return {state, {}};
+  }
 }
 
 void GuideOptions::describe(strict_files::OptionList& list) {

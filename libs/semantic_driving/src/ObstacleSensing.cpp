@@ -9,11 +9,15 @@ using namespace semantic_planning;
 ObstaclePoints senseObstacles(const SemanticPlanner& planner, const mrpt::math::TPose2D& pose,
                               double z, const ObstacleOptions& options) {
   const Ground& ground = planner.ground();
-  const ObstacleFinder finder(planner, options);
   ObstaclePoints obstacles;
-  const Surroundings surroundings(ground, pose, ground.keyOf(z), options.radius);
+  const Column center = ground.columnAt(pose.x, pose.y);
+  const int reach = static_cast<int>(std::ceil(options.radius / ground.voxelSize()));
+  const ColumnRectangle square = ColumnRectangle::around(center, reach);
+  const Surroundings surroundings(ground, square, center, ground.keyOf(z));
   surroundings.forEach([&](Column c, int height, const Surface* surface) {
-    if (!finder.isObstacle(c, height, surface)) return;
+    const int x = c.x - center.x, y = c.y - center.y;
+    if (x * x + y * y > reach * reach) return;
+    if (!isObstacle(planner, options, c, height, surface)) return;
     const auto p = pose.inverseComposePoint({ground.centerOf(c.x), ground.centerOf(c.y)});
     obstacles.emplace_back(p.x, p.y);
   });

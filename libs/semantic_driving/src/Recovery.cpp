@@ -19,31 +19,22 @@ constexpr double kSameForbidden = 0.1;   // m of forbidden ground that make no d
 // m beyond the least way over forbidden ground where a shorter way is looked for
 constexpr double kRecoveryFurther = 2;
 
-/** What was forbidden is one rank behind the others. */
+/** What was forbidden is one rank behind all others. */
 ClassOrder allowingAll(const ClassOrder& order) {
-  std::vector<std::vector<colored_graph::GraphClass>> ranks(order.ranks() + 1);
+  std::vector<std::vector<colored_graph::GraphClass>> ranks(2);
   for (int id = 0; id < order.classes(); ++id) {
     const auto classId = static_cast<colored_graph::GraphClass>(id);
-    const colored_graph::Rank rank = order.rank(classId);
-    ranks[rank == colored_graph::kForbidden ? order.ranks() : rank].push_back(classId);
+    ranks[order.rank(classId) == colored_graph::kForbidden ? 1 : 0].push_back(classId);
   }
   if (ranks.back().empty()) ranks.pop_back();
-  if (ranks.size() > colored_graph::kMaxRanks) {  // the two worst share one
-    ranks[ranks.size() - 2].insert(ranks[ranks.size() - 2].end(), ranks.back().begin(),
-                                   ranks.back().end());
-    ranks.pop_back();
-  }
   return ClassOrder(order.classes(), ranks);
 }
 
-VehicleOptions withoutClearance(VehicleOptions vehicle) {
-  vehicle.clearance = 0;
-  return vehicle;
-}
-
-GroundOptions withoutKeepingOff(GroundOptions ground) {
-  ground.keepOff = false;
-  return ground;
+/** Without clearance, and with forbidden classes below the footprint. */
+PlannerOptions leniently(PlannerOptions options) {
+  options.vehicle.clearance = 0;
+  options.ground.keepOff = false;
+  return options;
 }
 
 class RecoverySearch {
@@ -51,16 +42,17 @@ class RecoverySearch {
   RecoverySearch(const SemanticPlanner& planner, double z)
       : m_planner(planner),
         m_z(z),
-        m_vehicle(withoutClearance(planner.options().vehicle)),
+        m_options(leniently(planner.options())),
         m_order(allowingAll(planner.order())),
-        m_ground(planner.ground().map(), m_vehicle, withoutKeepingOff(planner.options().ground),
-                 m_order),
-        m_checker(m_ground, m_vehicle, m_order) {}
+        m_ground(planner.ground().map(), m_options.vehicle, m_options.ground, m_order),
+        m_checker(m_ground, m_options.vehicle, m_order) {}
 
   DrivePath search(const TPose2D& from, double nearest) {
     const auto start = m_checker.place(from, m_z);
     if (!start) return {};
-    for (double r = nearest + kRecoveryStep; isWorthwhile(r, nearest); r += kRecoveryStep)
+    for (double r = nearest + kRecoveryStep;
+         r <= kRecoveryRadius && r < m_leastForbidden + nearest + kRecoveryFurther;
+         r += kRecoveryStep)
       for (int direction = 0; direction < kRecoveryDirections; ++direction)
         for (int heading = 0; heading < kRecoveryHeadings; ++heading) {
           const double to = from.phi + direction * 2 * M_PI / kRecoveryDirections;
@@ -71,10 +63,6 @@ class RecoverySearch {
   }
 
  private:
-  bool isWorthwhile(double r, double nearest) const {
-    return r <= kRecoveryRadius && r < m_leastForbidden + nearest + kRecoveryFurther;
-  }
-
   void consider(const GroundPose& start, const TPose2D& pose) {
     if (m_planner.check(pose, m_z) != PlanStatus::Found) return;
     const auto end = m_checker.place(pose, m_z);
@@ -96,7 +84,7 @@ class RecoverySearch {
 
   const SemanticPlanner& m_planner;
   double m_z;
-  VehicleOptions m_vehicle;
+  PlannerOptions m_options;
   ClassOrder m_order;
   Ground m_ground;
   CollisionChecker m_checker;

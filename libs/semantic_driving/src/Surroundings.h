@@ -5,71 +5,52 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "GroundFlood.h"
 
 namespace semantic_driving {
 
-/** Which columns are obstacles at a height of the ground. */
-class ObstacleFinder {
- public:
-  ObstacleFinder(const semantic_planning::SemanticPlanner& planner, const ObstacleOptions& options)
-      : m_planner(planner),
-        m_ground(planner.ground()),
-        m_options(options),
-        m_height(
-            static_cast<int>(std::ceil(planner.options().vehicle.height / m_ground.voxelSize()))) {}
-
-  bool isObstacle(semantic_planning::Column c, int z,
-                  const semantic_planning::Surface* surface) const {
-    if (!surface)
-      return m_options.unknown || m_ground.isOccupied(c, z + m_ground.step() + 1, z + m_height);
-    if (!surface->drivable) return true;
-    return m_options.forbiddenGround && !surface->filled &&
-           m_planner.order().rank(surface->classId) == colored_graph::kForbidden;
+/** Whether a column is an obstacle where the ground that leads there is at a height.
+ * \param surface of the ground there; null: none is known */
+inline bool isObstacle(const semantic_planning::SemanticPlanner& planner,
+                       const ObstacleOptions& options, semantic_planning::Column c, int z,
+                       const semantic_planning::Surface* surface) {
+  const semantic_planning::Ground& ground = planner.ground();
+  if (!surface) {
+    const double height = planner.options().vehicle.height / ground.voxelSize();
+    return options.unknown ||
+           ground.isOccupied(c, z + ground.step() + 1, z + static_cast<int>(std::ceil(height)));
   }
-
- private:
-  const semantic_planning::SemanticPlanner& m_planner;
-  const semantic_planning::Ground& m_ground;
-  const ObstacleOptions& m_options;
-  int m_height;
-};
+  if (!surface->drivable) return true;
+  return options.forbiddenGround && !surface->filled &&
+         planner.order().rank(surface->classId) == colored_graph::kForbidden;
+}
 
 /** The columns around a vehicle, each with the height of the ground that leads there. */
 class Surroundings {
  public:
-  Surroundings(const semantic_planning::Ground& ground, const mrpt::math::TPose2D& pose, int z,
-               double radius)
-      : Surroundings(ground, ground.columnAt(pose.x, pose.y), z,
-                     static_cast<int>(std::ceil(radius / ground.voxelSize()))) {}
-  /** \param center in the rectangle, all of which is within the radius */
+  /** \param center in the rectangle, on ground of height z (key) */
   Surroundings(const semantic_planning::Ground& ground, const ColumnRectangle& columns,
                semantic_planning::Column center, int z)
       : m_ground(ground),
         m_columns(columns),
         m_center(center),
-        m_reach2(std::numeric_limits<int>::max()),
         m_heights(columns.size(), kNotReached) {
     spread(z);
   }
 
   bool contains(semantic_planning::Column c) const { return m_columns.contains(c); }
-  bool isWithinRadius(semantic_planning::Column c) const {
-    const int x = c.x - m_center.x, y = c.y - m_center.y;
-    return x * x + y * y <= m_reach2;
-  }
   /** Key of the ground's height there, or that leads there. \param c contained */
   int height(semantic_planning::Column c) const { return m_heights[m_columns.indexOf(c)]; }
 
   /** f(column, key of the ground's height, surface there or null) */
   template <class F>
   void forEach(F f) const {
-    for (std::size_t i = 0; i < m_heights.size(); ++i)
-      if (const semantic_planning::Column c = m_columns.columnOf(i); isWithinRadius(c))
-        f(c, m_heights[i], m_ground.near(c, m_heights[i], m_ground.step()));
+    for (std::size_t i = 0; i < m_heights.size(); ++i) {
+      const semantic_planning::Column c = m_columns.columnOf(i);
+      f(c, m_heights[i], m_ground.near(c, m_heights[i], m_ground.step()));
+    }
   }
 
  private:
@@ -80,16 +61,6 @@ class Surroundings {
     semantic_planning::Column column;
     int z;  ///< of the ground there, or that leads there
   };
-
-  Surroundings(const semantic_planning::Ground& ground, semantic_planning::Column center, int z,
-               int reach)
-      : m_ground(ground),
-        m_columns(ColumnRectangle::around(center, reach)),
-        m_center(center),
-        m_reach2(reach * reach),
-        m_heights(m_columns.size(), kNotReached) {
-    spread(z);
-  }
 
   /** Over ground first, so that a detour over it counts for more than a jump over a gap. */
   void spread(int z) {
@@ -114,7 +85,6 @@ class Surroundings {
   const semantic_planning::Ground& m_ground;
   const ColumnRectangle m_columns;
   semantic_planning::Column m_center;
-  int m_reach2;  ///< squared radius, columns
   std::vector<int> m_heights;
 };
 

@@ -33,8 +33,8 @@ class DriveController {
                     double seconds, const DynamicObstacles& movers = {},
                     const ObstaclePoints* room = nullptr);
 
-  enum class Driver { Tracker, Reactive };
-  Driver driver() const { return m_driver; }
+  /** Whether MRPT's navigator steers, and not the tracker. */
+  bool isReactive() const { return m_isReactive; }
   /** Seconds since the vehicle last got on, although there is way left. */
   double stoppedFor(double seconds) const { return seconds - m_movedAt; }
 
@@ -56,7 +56,7 @@ class DriveController {
   PathTracker m_tracker;
   DrivenTrack m_track;
   ReactiveNavigator m_reactive;
-  Driver m_driver = Driver::Tracker;
+  bool m_isReactive = false;
   Motion m_motion;
   std::optional<double> m_steppedAt;  ///< seconds
   double m_movedAt = 0;
@@ -64,9 +64,5 @@ class DriveController {
   std::vector<semantic_planning::PathPoint> m_waypoints;
   double m_reactiveAgain = 0;  ///< seconds: it is not asked before, as it found no way
 };
-
-const strict_files::Choices<DriveController::Driver>& choicesOf(DriveController::Driver);
-/** "path" (the tracker) or "reactive". */
-const char* nameOf(DriveController::Driver driver);
 
 }  // namespace semantic_driving

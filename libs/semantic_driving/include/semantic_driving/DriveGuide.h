@@ -47,7 +47,7 @@ class DriveGuide {
   bool isSearching() const { return m_open.has_value(); }
   /** Gives up what it looks for; the next update() looks anew. */
   void stopSearching();
-  Target target() const { return m_state.target(); }
+  Target target() const { return m_state.target; }
   /** Where it drives in the end: the goal, or in its place the nearest pose that fits. */
   const mrpt::math::TPose2D& goal() const { return m_aim; }
   /** Since it was said that the goal does not fit. */
@@ -56,7 +56,7 @@ class DriveGuide {
   bool arrived(const DriveState& state, const DriveController& drive) const;
   /** No path, and nothing else to look at, or the goal is enclosed (findFrontiers()) or does not
    * fit (findMisfit()); for good. */
-  bool gaveUp() const { return std::holds_alternative<GaveUp>(m_state.activity); }
+  bool gaveUp() const { return m_state.gaveUp; }
   /** Why the last plan to the goal, or the recovery, was not found. */
   const std::string& reason() const { return m_reason; }
   /** What counts as an obstacle on the way that the vehicle is on: on the way out of forbidden
@@ -91,11 +91,11 @@ class DriveGuide {
   std::optional<GoalMisfit> misfit(const Situation& now) const;
   bool isNearGoal(const DriveState& state) const;
   Look look(const Situation& now) const;
-  Departure departureOf(const Situation& now, From from) const;
+  Departure departureOf(const Situation& now, bool ahead) const;
   bool isPast(const Departure& from, const Situation& now) const;
   DrivePath until(const Departure& from, const Situation& now) const;
   DrivePath untilRest(const Situation& now) const;
-  void apply(const Action& action, const Situation& now, DriveController& drive);
+  void apply(Action::What what, const Situation& now, DriveController& drive);
 
   /** Leaves in m_found what it finds. \return none: it is still looking */
   std::optional<Answer> answer(const Action& question, const Situation& now);
@@ -103,9 +103,9 @@ class DriveGuide {
   bool improves(const Departure& from, const Situation& now);
   bool isEarly(const Situation& now) const;
   bool isBetter(const Situation& now) const;
-  bool toGoal(From from, const Situation& now);
-  bool toFrontier(const SeekFrontier& question, const Situation& now);
-  std::optional<DrivePath> recovery(const Situation& now, bool blind);
+  bool toGoal(bool ahead, const Situation& now);
+  bool toFrontier(const Action& question, const Situation& now);
+  std::optional<DrivePath> recovery(const Situation& now);
   std::optional<DrivePath> back(const Situation& now) const;
   bool aimsElsewhere(const Situation& now);
 

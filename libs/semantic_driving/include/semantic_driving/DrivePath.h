@@ -58,7 +58,8 @@ class DrivenTrack {
 
   /** Called often, with each place where the vehicle is; map frame. */
   void add(const mrpt::math::TPose2D& pose);
-  /** From the last place back to the first one that is kept, headings as they were; z is 0. */
+  /** From the last place back to the first one that is kept, headings as they were; z and
+   * curvatures are 0. */
   std::vector<semantic_planning::PathPoint> back() const;
 
  private:

@@ -4,7 +4,6 @@
 
 #include <limits>
 #include <optional>
-#include <variant>
 
 namespace semantic_driving {
 
@@ -28,49 +27,24 @@ struct GuideOptions {
 /** Where a path leads: nowhere, to the goal, to a look-out, out of where the vehicle must not be,
  * back along its own track. */
 enum class Target { None, Goal, Frontier, Recovery, Back };
-const strict_files::Choices<Target>& choicesOf(Target);
 /** "none", "goal", "frontier", "recovery" or "back". */
 const char* nameOf(Target target);
 
-// What a guide does. Times are seconds of the clock that it is told.
-
-/** There is no path; since when, if it looked for one. */
-struct Idle {
-  std::optional<double> since;
-};
-struct ToGoal {
-  std::optional<double> blockedSince;
-};
-struct ToFrontier {
-  std::optional<double> blockedSince;
-};
-/** On a way out of where the vehicle must not be. Blind: it does not see the ground below it, so
- * the way is driven to its end, else up to where it can plan. */
-struct Recovering {
-  bool blind = false;
-  std::optional<double> blockedSince;
-};
-/** Back along the vehicle's track. */
-struct GoingBack {};
-/** For good. */
-struct GaveUp {};
-using Activity = std::variant<Idle, ToGoal, ToFrontier, Recovering, GoingBack, GaveUp>;
-
+/** What a guide does. Times are seconds of the clock that it is told. */
 struct GuideState {
-  Activity activity;
   static constexpr double kNever = -std::numeric_limits<double>::infinity();
-  double plannedAt = kNever;                ///< a path was last looked for
-  double changedAt = kNever;                ///< the same, and not one from a place ahead
-  bool hasPlanned = false;                  ///< a path to the goal or a frontier was driven
-  int timesBack = 0;                        ///< since then, back on its track
-  static constexpr int kMostTimesBack = 3;  ///< then there is no path
-  bool comesToRest = false;                 ///< before the end of its path, to take another one
-  bool enclosed = false;                    ///< no way leads to the goal, whatever else is seen
-  std::optional<double> misfitSince;        ///< what is known keeps the vehicle from the goal
-  bool recoveredBlind = false;  ///< the last recovery that was looked for is for a blind vehicle
-  int replans = 0;              ///< paths that were left for another one before their end
-
-  Target target() const;
+  static constexpr int kMostTimesBack = 3;
+  Target target = Target::None;
+  bool gaveUp = false;                  ///< for good
+  double plannedAt = kNever;            ///< a path was last looked for
+  double changedAt = kNever;            ///< the same, and not one from a place ahead
+  std::optional<double> pathlessSince;  ///< it looked for a path in vain
+  std::optional<double> blockedSince;   ///< the path to the goal or a frontier
+  std::optional<double> misfitSince;    ///< what is known keeps the vehicle from the goal
+  bool hasPlanned = false;              ///< a path to the goal or a frontier was driven
+  int timesBack = 0;         ///< back on its track since a path to the goal or a frontier
+  bool comesToRest = false;  ///< before the end of its path, to take another one
+  int replans = 0;           ///< paths that were left for another one before their end
 };
 
 /** What a guide sees each time it is asked. */
@@ -89,39 +63,29 @@ struct Look {
   bool goalMisfits = false;
 };
 
-// What a guide does next. It takes paths as they are found, or asks for one more.
+/** What a guide does next. It takes paths as they are found, or asks for one more. */
+struct Action {
+  enum class What {
+    GoOn,        ///< as before
+    Stop,        ///< it has no path any more
+    ComeToRest,  ///< keeps so much of the path as that takes
+    Follow,      ///< drives the path that was found
+    SeekGoal,
+    SeekFrontier,
+    SeekRecovery,
+    SeekBack,
+    SeekNearest  ///< the pose nearest to a goal that does not fit, if it drives there in its place
+  };
+  What what = What::GoOn;
+  bool ahead = false;       ///< the path begins on the present one, a little ahead of the vehicle
+  bool replaces = false;    ///< it replaces a path that was not driven to its end
+  bool orFrontier = false;  ///< SeekGoal: to one, if there is no path to the goal
+  bool last = false;        ///< SeekFrontier: what is not reached now is not looked for again
 
-/** Goes on as before. */
-struct GoOn {};
-/** Has no path any more. */
-struct Stop {};
-/** Keeps so much of the path as it takes to come to rest. */
-struct ComeToRest {};
-/** Drives the path that was found. */
-struct Follow {};
+  bool isQuestion() const { return what >= What::SeekGoal; }
+};
 
-/** Where paths begin: where the vehicle is, or on its path a little ahead. */
-enum class From { Here, Ahead };
-struct SeekGoal {
-  From from = From::Here;
-  bool replaces = false;   ///< a path that was not driven to its end
-  bool orFrontier = true;  ///< if there is no path to the goal
-};
-struct SeekFrontier {
-  From from = From::Here;
-  bool replaces = false;
-  bool last = false;  ///< places that are not reached now are not looked for again
-};
-struct SeekRecovery {
-  bool blind = false;
-};
-struct SeekBack {};
-/** The pose nearest to a goal that does not fit, if it drives there in its place. */
-struct SeekNearest {};
-using Action = std::variant<GoOn, Stop, ComeToRest, Follow, SeekGoal, SeekFrontier, SeekRecovery,
-                            SeekBack, SeekNearest>;
-
-/** What came of a question (Seek...). */
+/** What came of a question. */
 struct Answer {
   Action question;
   double seconds = 0;     ///< as in Look
