@@ -149,26 +149,3 @@ TEST(ColoredReplanner, expandsNothingWhenNothingChanged) {
   EXPECT_EQ(second.statistics.expansions, 0u);
   EXPECT_EQ(second.edges, first.edges);
 }
-
-TEST(ColoredReplanner, aReusedIdIsANewPlace) {
-  // 0 - 1 - 2 on a line; vertex 1 moves far away under the same id and must not keep its old bound.
-  ColoredGraph graph(1);
-  std::vector<Length> place{0, 10, 20, 15};
-  for (int v = 0; v < 4; ++v) graph.addVertex(0);
-  graph.addEdge(0, 1, {{0, 10}});
-  graph.addEdge(1, 2, {{0, 10}});
-  graph.addEdge(0, 3, {{0, 25}});
-  graph.addEdge(3, 2, {{0, 5}});
-  SearchOptions options;
-  options.lengthBound = [&](VertexId a, VertexId b) { return std::abs(place[a] - place[b]); };
-  const CostModel model{ClassOrder(1, {{0}})};
-  ColoredReplanner replanner(graph, 0, 2, model, options);
-  EXPECT_EQ(replanner.solve().cost, oracles::Tuple{20});
-  graph.removeVertex(1);
-  place[1] = 2;
-  ASSERT_EQ(graph.addVertex(0), 1u);
-  graph.addEdge(0, 1, {{0, 2}});
-  graph.addEdge(1, 3, {{0, 13}});
-  EXPECT_EQ(replanner.solve().cost, oracles::Tuple{20});
-  EXPECT_EQ(replanner.solve().vertices, (std::vector<VertexId>{0, 1, 3, 2}));
-}

@@ -73,18 +73,3 @@ TEST_F(NearestPosesTest, areThoseOfBruteForceWhilePosesComeAndGo) {
       expectLikeBruteForce();
     }
 }
-
-TEST_F(NearestPosesTest, thoseOfAForeignPoseAreTheNearest) {
-  replace(0, 200);
-  for (int i = 0; i < 20; ++i) {
-    const GroundPose pose{randomPose(), 0};
-    const auto found = nearest.nearestTo(pose, 7);
-    std::vector<double> expected;
-    for (VertexId v = 0; v < 200; ++v)
-      expected.push_back(shepp.distance(pose.pose, nearest.pose(v).pose));
-    std::sort(expected.begin(), expected.end());
-    for (std::size_t k = 0; k < found.size(); ++k)
-      EXPECT_NEAR(found[k].distance, expected[k], 1e-9);
-    EXPECT_TRUE(found.size() == 7 || expected[found.size()] > kRadius);
-  }
-}

@@ -102,25 +102,6 @@ TEST_F(PlannerTest, afterEveryChangeOfTheMapTheRepairedPathIsTheBest) {
   EXPECT_GT(removed, 0);
 }
 
-TEST_F(PlannerTest, theRoadmapFollowsTheCompressedTree) {
-  world.floor(-7, 7, -7, 7, PaintedWorld::Grass);
-  world.floor(-7, 7, -1.5, 1.5, PaintedWorld::Road);
-  start = {-5, 0, 0};
-  goal = {5, 0, 0};
-  options.roadmap.vertices = 0;
-  options.roadmap.neighbors = 3;
-  options.shorten = false;
-  SemanticPlanner p = planner();
-  p.plan(start, goal);
-  for (int i = 0; i < 4; ++i) world.floor(0, 4, -6, -2, PaintedWorld::Road).map();
-  p.update();
-  p.replan(start);
-  SemanticPlanner fresh = planner();
-  fresh.plan(start, goal);
-  EXPECT_EQ(posesOf(p.roadmap()), posesOf(fresh.roadmap()));
-  EXPECT_EQ(p.roadmap().graph().edgeCount(), fresh.roadmap().graph().edgeCount());
-}
-
 TEST_F(PlannerTest, theBudgetOfEdgesHoldsAfterUpdatesAndTheBestOnesAreIn) {
   paintCorner();
   options.roadmap.maxEdges = 700;

@@ -71,8 +71,6 @@ class ColoredReplanner::Search {
   struct Node {
     CostVector g = CostVector::infinite();
     CostVector rhs = CostVector::infinite();
-    Length distance = 0;      // lower bound of the length from the start number `distanceOf`
-    unsigned distanceOf = 0;  // 0: none yet
     Incidence next{kNoVertex, kNoEdge};
     Key key;  // in the queue
     bool isQueued = false;
@@ -125,7 +123,6 @@ class ColoredReplanner::Search {
   /** D* Lite would leave the keys and raise k_m instead. Recomputing the keys of the few queued
    * vertices asks less of the lower bound: it only has to be consistent from each start. */
   void rekey() {
-    ++m_startNumber;
     for (const auto& [key, v] : std::exchange(m_queue, {})) {
       m_nodes[v].isQueued = false;
       enqueue(v);
@@ -138,7 +135,6 @@ class ColoredReplanner::Search {
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const VertexId v : changed) {
-      m_nodes[v].distanceOf = 0;  // its id may have been given to another vertex
       if (m_graph.containsVertex(v))
         repairRhs(v);
       else
@@ -239,13 +235,9 @@ class ColoredReplanner::Search {
     m_nodes[v].isQueued = false;
   }
 
-  Key key(VertexId v) {
-    Node& node = m_nodes[v];
-    if (node.distanceOf != m_startNumber) {
-      node.distanceOf = m_startNumber;
-      node.distance = m_options.lengthBound ? m_options.lengthBound(m_start, v) : 0;
-    }
-    return {std::min(node.g, node.rhs) + m_costs.ofLength(node.distance), node.distance};
+  Key key(VertexId v) const {
+    const Length distance = m_options.lengthBound ? m_options.lengthBound(m_start, v) : 0;
+    return {std::min(m_nodes[v].g, m_nodes[v].rhs) + m_costs.ofLength(distance), distance};
   }
 
   // --- The path
@@ -354,7 +346,6 @@ class ColoredReplanner::Search {
   std::set<std::pair<Key, VertexId>> m_queue;
   std::uint64_t m_seen = 0;
   bool m_startMoved = false;
-  unsigned m_startNumber = 1;
   SearchStatistics m_statistics;
   bool m_looksFirst = false;
 };

@@ -1,4 +1,5 @@
 #pragma once
+#include <mrpt/math/TPose2D.h>
 #include <semantic_planning/ground/Ground.h>
 
 #include <optional>
