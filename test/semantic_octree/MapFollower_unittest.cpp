@@ -219,17 +219,18 @@ TEST(MapFollower, tilesAreAllThoseInALargerCubeThatChangesAsAWhole) {
   }
 }
 
-using Log = ChangeLog<int>;
+using Log = ChangeLog;
 constexpr std::size_t kMost = 16;
 
 /** A reader, and what it should know. */
 struct LogReader {
   std::optional<Log::Place> place;
-  std::vector<int> unread;
+  std::vector<Log::Entry> unread;
   bool hasRead = false;
 
   void read() {
-    if (!place->isLost()) RC_ASSERT(std::vector<int>(place->begin(), place->end()) == unread);
+    if (!place->isLost())
+      RC_ASSERT(std::vector<Log::Entry>(place->begin(), place->end()) == unread);
     place->moveToEnd();
     unread.clear();
     hasRead = true;
@@ -246,7 +247,7 @@ TEST(ChangeLog, tellsEachReaderWhatItHasNotReadOrThatItIsLost) {
   EXPECT_TRUE(rc::check([] {
     const auto log = std::make_shared<Log>(kMost);
     LogReader readers[3];
-    int next = 0;
+    Log::Entry next = 0;
     for (const int step : *rc::gen::container<std::vector<int>>(200, rc::gen::inRange(0, 30))) {
       if (step < 3) {
         LogReader& reader = readers[step];
@@ -274,7 +275,7 @@ TEST(ChangeLog, keepsNothingThatAllHaveRead) {
   {
     Log::Place slow(log);
     slow.moveToEnd();
-    for (int i = 0; i < 5; ++i) log->push(i);
+    for (Log::Entry i = 0; i < 5; ++i) log->push(i);
     quick.moveToEnd();
     EXPECT_EQ(log->size(), 5u);
   }

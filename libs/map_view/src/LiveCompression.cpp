@@ -64,7 +64,7 @@ AbstractionOptions LiveCompression::allClasses(const SemanticOcTree& map,
 }
 
 LiveCompression::LiveCompression(SemanticOcTree& map, const AbstractionOptions& solution)
-    : m_numClasses(map.numClasses()),
+    : m_classes(map.classes()),
       m_options(withAllTerms(map, solution)),
       m_numRoots(map.getNumLeafNodes()) {
   readNodes(map);
@@ -125,8 +125,9 @@ void LiveCompression::findAlphas() {
 }
 
 void LiveCompression::change(const AbstractionWeights& weights) {
-  weights.validate(m_numClasses);
-  m_options.weights = weights;
+  AbstractionOptions changed = m_options;
+  changed.weights = weights;
+  m_options = changed.forClasses(m_classes);
   m_threshold = alpha() + m_options.weights.eps();
   m_retained.clear();
 }

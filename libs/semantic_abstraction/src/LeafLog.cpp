@@ -8,7 +8,7 @@ namespace semantic_octree {
 
 /** The leaves of a compressed tree that came and went, and the tree as it was last seen. A node of
  * that is an index: none, a leaf, or an inner node's eight children. */
-class LeafLog : public ChangeLog<std::uint64_t> {
+class LeafLog : public ChangeLog {
  public:
   /** Compares with the map as it is now, remembers that, and writes down the difference if anybody
    * reads it. Visits only nodes that changed or have changed nodes below them. If it fails, the log

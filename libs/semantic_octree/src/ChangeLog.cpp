@@ -38,13 +38,11 @@ std::vector<octomap::OcTreeKey> keysOf(Tiles tiles) {
 
 }  // namespace
 
-void TileLog::add(const Cube& cube) { push(packed(cube)); }
-
 struct MapFollower::Content {
   FollowedMap map;
-  std::unique_ptr<TileLog::Place> place = nullptr;
+  std::unique_ptr<ChangeLog::Place> place = nullptr;
 
-  TileLog::Place& placeNow() { return placeIn(place, MapAccess::tileLog(map.get())); }
+  ChangeLog::Place& placeNow() { return placeIn(place, MapAccess::tileLog(map.get())); }
 };
 
 MapFollower::MapFollower(std::unique_ptr<Content> content) : m(std::move(content)) {}
@@ -59,7 +57,7 @@ MapFollower SemanticOcTree::follow() {
 
 TileChange MapFollower::tiles() {
   const SemanticOcTree& map = m->map.get();
-  TileLog::Place& place = m->placeNow();
+  ChangeLog::Place& place = m->placeNow();
   Tiles tiles;
   if (!place.isLost())
     for (const std::uint64_t cube : place) addTilesIn(unpacked(cube), tiles);

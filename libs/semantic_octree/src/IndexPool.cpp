@@ -24,7 +24,9 @@ std::uint32_t IndexPool::addChunk() {
 }
 
 int IndexAllocator::lengthClass(int n) {
-  return static_cast<int>(std::lower_bound(kLengths, kLengths + kNumLengths, n) - kLengths);
+  int c = 0;  // single elements are the most frequent
+  while (kLengths[c] < n) ++c;
+  return c;
 }
 
 std::uint32_t IndexAllocator::allocate(IndexPool& pool, int n) {

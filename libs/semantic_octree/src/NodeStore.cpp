@@ -132,12 +132,18 @@ Block& NodeArena::createBlock(Slot& slot) {
 
 void NodeArena::createBlock(Slot& slot, const BlockContent& content) {
   Block& block = createBlock(slot);
-  fill(block, content);
+  put(content, block);
+  recount({0, 0}, block.count());
   slot.value = block.highestValue();
 }
 
 void NodeArena::fill(Block& block, const BlockContent& content) {
   const Block::Count before = block.count();
+  put(content, block);
+  recount(before, block.count());
+}
+
+void NodeArena::put(const BlockContent& content, Block& block) {
   setRecorded(block, content.recorded);  // first, for it may fail
   std::copy_n(content.values, 64, block.values);
   block.known = content.known;
@@ -145,7 +151,6 @@ void NodeArena::fill(Block& block, const BlockContent& content) {
   ClassRecord* record = content.recorded ? m_store->recordsOf(block) : nullptr;
   for (VoxelBits bits = content.recorded; bits; bits &= bits - 1)
     *record++ = content.records[__builtin_ctzll(bits)];
-  recount(before, block.count());
 }
 
 Octant& NodeArena::expandToOctant(Slot& leaf) {

@@ -208,7 +208,7 @@ void Scan::clear() {
 
 bool Scan::isLarge() const {
   constexpr std::size_t kTooManyBytes = 256000000;
-  std::size_t bytes = 0;  // of the grids, beside which the other buffers are small
+  std::size_t bytes = 0;  // the grids': beside them the other buffers are small
   for (const ScanGrid& grid : m_free) bytes += grid.bytes();
   return bytes > kTooManyBytes;
 }

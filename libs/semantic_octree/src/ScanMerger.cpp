@@ -13,7 +13,7 @@ namespace {
 /** Threads share cubes of 64 voxels' side. */
 constexpr int kSharedDepth = 10;
 
-/** Of the target's rule or filter. */
+/** Fusion by the target's rule, or else by its filter. */
 std::unique_ptr<BlockFusion> fusionOf(const MergeTarget& target, NodeArena& arena,
                                       const LabelReliability& labels) {
   if (target.rule) return target.rule->begin(target.store, arena, target.pruning, labels);

@@ -25,10 +25,7 @@ class CheckedWriter {
   explicit CheckedWriter(std::ostream& out) : m_out(out), m_block(kMaxBlockBytes) {}
   template <typename T>
   void put(T value) {
-    static_assert(std::is_arithmetic_v<T>);
-    if (m_used + sizeof(T) > kMaxBlockBytes) flush();
-    std::memcpy(m_block.data() + m_used, &value, sizeof(T));
-    m_used += sizeof(T);
+    put(&value, 1);
   }
   template <typename T>
   void put(const T* values, std::size_t n) {

@@ -142,7 +142,7 @@ class LiveCompression {
     return m_information[std::size_t(node) * numTerms() + term];
   }
 
-  int m_numClasses;
+  semantic_types::ClassTable m_classes;
   AbstractionOptions m_options;
   std::vector<Index> m_end;
   std::vector<std::uint64_t> m_places;  ///< lowest keys and depth, packed

@@ -30,7 +30,7 @@ class LabelAgreement {
    * these did. Where they agree less than with a correlation of 0.02, the accuracy that leads to
    * that. Agreement is taken in steps of 1/64, so that scans that are alike are trusted alike, and
    * the parameters count like another thousand labels.
-   * \param numClasses K; with one, or published constants, the answer is the parameters' */
+   * \param numClasses K; with one, the answer is the parameters' */
   LabelReliability explain(const FilterParameters& parameters, int numClasses) const;
 
  private:

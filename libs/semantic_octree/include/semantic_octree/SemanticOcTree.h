@@ -24,7 +24,7 @@ class MapFollower;
 class NodeObserver;
 class NodeStore;
 class Scan;
-class TileLog;
+class ChangeLog;
 
 /** What the map knows about a place. */
 struct CellState {
@@ -227,7 +227,7 @@ class SemanticOcTree {
   std::unique_ptr<NodeObserver> m_observer;  ///< null: nothing is kept of inner nodes
   std::unique_ptr<Scan> m_scan;              ///< buffers of the last insertion, if there was one
   std::shared_ptr<SemanticOcTree*> m_self;   ///< readers see that it is gone; null: there was none
-  std::weak_ptr<TileLog> m_tileLog;          ///< readers own what they read
+  std::weak_ptr<ChangeLog> m_tileLog;        ///< readers own what they read
 };
 
 /** A map stays as it is while this lives: whoever would change it in another thread gets

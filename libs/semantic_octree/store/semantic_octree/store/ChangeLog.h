@@ -11,14 +11,15 @@
 
 namespace semantic_octree {
 
-/** What changed, oldest first and numbered, for readers that each have a place of their own. What
- * all of them have read is dropped. When the log is long, its older half is dropped. A reader that
- * has not read it is lost, and has to look at everything. */
-template <typename Entry>
+/** What changed (a map's: the cubes, each a tile of 8 x 8 x 8 voxels or larger, packed), oldest
+ * first and numbered, for readers that each have a place of their own. What all of them have read
+ * is dropped. When the log is long, its older half is dropped. A reader that has not read it is
+ * lost, and has to look at everything. */
 class ChangeLog {
   using Number = std::uint64_t;
 
  public:
+  using Entry = std::uint64_t;
   static constexpr std::size_t kMost = std::size_t(1) << 20;
 
   /** Where a reader is. */
@@ -60,7 +61,7 @@ class ChangeLog {
     return std::any_of(m_places.begin(), m_places.end(),
                        [](const Place* p) { return !p->isLost(); });
   }
-  void push(const Entry& entry) {
+  void push(Entry entry) {
     if (m_entries.size() >= m_most) {
       dropBefore(end() - m_most / 2);
       dropRead();
@@ -102,17 +103,10 @@ std::shared_ptr<Log> readLog(std::weak_ptr<Log>& kept) {
 }
 
 /** The reader's place, lost if it was in another log. */
-template <typename Log>
-typename Log::Place& placeIn(std::unique_ptr<typename Log::Place>& place,
-                             const std::shared_ptr<Log>& log) {
-  if (!place || !place->isIn(*log)) place = std::make_unique<typename Log::Place>(log);
+inline ChangeLog::Place& placeIn(std::unique_ptr<ChangeLog::Place>& place,
+                                 const std::shared_ptr<ChangeLog>& log) {
+  if (!place || !place->isIn(*log)) place = std::make_unique<ChangeLog::Place>(log);
   return *place;
 }
-
-/** The cubes in which a map changed, each a tile of 8 x 8 x 8 voxels or larger. */
-class TileLog : public ChangeLog<std::uint64_t> {
- public:
-  void add(const Cube& cube);
-};
 
 }  // namespace semantic_octree

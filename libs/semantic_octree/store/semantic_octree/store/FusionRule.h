@@ -31,7 +31,7 @@ class BlockFusion {
   virtual Result update(Block& block, const BlockScan& scan) = 0;
 };
 
-/** The class filter's. */
+/** Fusion by the class filter. */
 std::unique_ptr<BlockFusion> fusionBy(ClassFilter filter, NodeStore& store, NodeArena& arena,
                                       bool pruning);
 

@@ -34,7 +34,7 @@ class MapAccess {
 
   /** For readers, who may outlive the map. */
   static std::weak_ptr<SemanticOcTree*> self(SemanticOcTree& map);
-  static std::shared_ptr<TileLog> tileLog(SemanticOcTree& map) { return readLog(map.m_tileLog); }
+  static std::shared_ptr<ChangeLog> tileLog(SemanticOcTree& map) { return readLog(map.m_tileLog); }
   /** At their next look, readers are told everything. */
   static void tellAll(SemanticOcTree& map);
 
@@ -46,7 +46,7 @@ class MapAccess {
   static void change(SemanticOcTree& map, const F& f) {
     checkMayChange(map);
     const auto log = map.m_tileLog.lock();
-    TileLog* const touched = log && log->isRead() ? log.get() : nullptr;
+    ChangeLog* const touched = log && log->isRead() ? log.get() : nullptr;
     const MergeTarget target{map.store(),          map.m_filter, map.m_rule.get(),
                              map.m_observer.get(), touched,      map.m_pruning};
     target.store.beginChanging();

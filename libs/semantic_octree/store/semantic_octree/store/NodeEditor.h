@@ -15,7 +15,7 @@ struct MergeTarget {
   /** Keeps inner nodes' bookkeeping up to date; null: there is none. */
   NodeObserver* observer;
   /** Is told where something changed; null: nobody wants to know. */
-  TileLog* touched;
+  ChangeLog* touched;
   /** Children that agree are merged; off: every known leaf is a voxel. */
   bool pruning;
 };
@@ -58,13 +58,13 @@ class NodeEditor {
   }
   /** Tells what was taken down; not from several threads at once. */
   void tellNoted() {
-    for (const Cube& cube : m_changed) m_touched->add(cube);
+    for (const Cube& cube : m_changed) m_touched->push(packed(cube));
     m_changed.clear();
   }
 
  private:
   NodeObserver::Worker* m_observer;
-  TileLog* m_touched;
+  ChangeLog* m_touched;
   std::vector<Cube> m_changed;
 };
 

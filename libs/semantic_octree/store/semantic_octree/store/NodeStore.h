@@ -293,6 +293,7 @@ class NodeArena {
  private:
   friend class NodeStore;
   void copy(const NodeStore& from, const Slot& source, Slot& copy, NodeStore::Tiles tiles);
+  void put(const BlockContent& content, Block& block);
   bool pruneOctant(Slot& inner);
   bool pruneBlock(Slot& inner);
   bool childrenAgree(const Octant& octant) const;
