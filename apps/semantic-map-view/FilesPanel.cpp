@@ -107,36 +107,19 @@ namespace {
 constexpr int kFilesWidth = 230;
 }
 
-FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, PlanPanel& plan,
-                       const WantedTiles& wanted)
-    : m_viewer(viewer), m_tracks(tracks), m_plan(plan), m_wantedTiles(wanted) {
-  auto* content = viewer.window().addPanel(ViewWindow::Side::Left, "Files", kFilesWidth)->content();
-  auto* row = addRow(content);
-  addText(row, "open", 40);
-  m_field = row->add<nanogui::TextBox>("");
-  m_field->setEditable(true);
-  m_field->setAlignment(nanogui::TextBox::Alignment::Left);
-  m_field->setFixedSize({kFilesWidth - 46, 22});
-  m_field->setFontSize(15);
-  m_field->setPlaceholder("a name, or drop files here");
-  m_field->setTooltip(
-      "Maps; trajectories (.tum, .txt) and paths (.csv); an order of classes, a vehicle (.yaml)");
-  m_field->setCallback([this](const std::string& file) {
-    if (!file.empty()) want(file);
-    return false;  // empty again
-  });
-  m_list = addScroll(content, kFilesWidth, 40);
+FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted)
+    : m_viewer(viewer),
+      m_tracks(tracks),
+      m_wantedTiles(wanted),
+      m_panel(viewer.window().addPanel(ViewWindow::Side::Left, "Files", kFilesWidth)) {
+  m_list = addScroll(m_panel->content(), kFilesWidth, 40);
   listTracks();
   viewer.window().addDropFilesCallback([this](const std::vector<std::string>& files) {
-    for (const auto& file : files) want(file);
+    m_wanted.insert(m_wanted.end(), files.begin(), files.end());
+    m_viewer.window().redraw();
     return true;
   });
   viewer.onFrame([this] { openWanted(); });
-}
-
-void FilesPanel::want(const std::string& file) {
-  m_wanted.push_back(file);
-  m_viewer.window().redraw();
 }
 
 void FilesPanel::openWanted() {
@@ -145,9 +128,7 @@ void FilesPanel::openWanted() {
 
 void FilesPanel::open(const std::string& file) {
   std::string text = "opened " + file + ": ";
-  if (std::filesystem::path(file).extension() == ".yaml") {
-    text += m_plan.open(file);
-  } else if (isTrack(file)) {
+  if (isTrack(file)) {
     m_tracks.add(readTrack(file));
     listTracks();
     text +=
@@ -157,7 +138,6 @@ void FilesPanel::open(const std::string& file) {
     m_viewer.add(std::make_unique<Layer>(file, m_wantedTiles));
     const Layer& layer = m_viewer.layer(m_viewer.numLayers() - 1);
     text += std::to_string(layer.map().getNumLeafNodes()) + " leaves";
-    if (!layer.note().empty()) text += "; " + layer.note();
   }
   m_viewer.say(text);
 }
@@ -172,7 +152,7 @@ void FilesPanel::listTracks() {
     };
     addCheckBox(m_list, m_tracks.track(i).name, kFilesWidth - 20, m_tracks.isShown(i), show);
   }
-  m_list->parent()->setVisible(m_tracks.size() > 0);
+  m_panel->setVisible(m_tracks.size() > 0);
 }
 
 }  // namespace semantic_map_view

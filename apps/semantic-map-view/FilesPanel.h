@@ -1,7 +1,6 @@
 #pragma once
 #include <mrpt_compat/Drawing.h>
 
-#include "PlanPanel.h"
 #include "Track.h"
 #include "map_window/ViewWindow.h"
 #include "map_window/Viewer.h"
@@ -49,25 +48,22 @@ class TrackScene {
   mrpt_compat::drawing::CSetOfObjects::Ptr m_bands = mrpt_compat::drawing::CSetOfObjects::Create();
 };
 
-/** Opens what is dropped onto the window or named in a field: maps, what lies upon them, and
- * what paths are planned by. */
+/** Opens what is dropped onto the window, maps and what lies upon them, and lists the latter. */
 class FilesPanel {
  public:
-  FilesPanel(Viewer& viewer, TrackScene& tracks, PlanPanel& plan, const WantedTiles& wanted);
+  FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted);
   FilesPanel(const FilesPanel&) = delete;
 
  private:
   /** Before the next frame: panels must not change while they handle what a hand does. */
-  void want(const std::string& file);
   void openWanted();
   void open(const std::string& file);
   void listTracks();
 
   Viewer& m_viewer;
   TrackScene& m_tracks;
-  PlanPanel& m_plan;
   const WantedTiles m_wantedTiles;
-  nanogui::TextBox* m_field;
+  Panel* m_panel;
   nanogui::Widget* m_list;
   std::vector<std::string> m_wanted;
 };

@@ -176,7 +176,7 @@ struct Panels {
         compress(viewer, cli.weights),
         why(viewer, compress),
         plan(viewer, cli.order, cli.vehicle),
-        files(viewer, tracks, plan, cli.wantedTiles()) {
+        files(viewer, tracks, cli.wantedTiles()) {
     if (cli.compress) compress.switchOn(true);
     cli.panels ? listen(viewer.window()) : viewer.window().hidePanels();
   }
@@ -197,8 +197,6 @@ int run(const Cli& cli) {
   const WindowSystem system;
   const auto window = ViewWindow::open("semantic-map-view", cli.width, cli.height);
   Viewer viewer(*window, std::move(opened.layers), cli.view);
-  for (std::size_t i = 0; i < viewer.numLayers(); ++i)
-    if (const auto& note = viewer.layer(i).note(); !note.empty()) viewer.say(note);
   TrackScene tracks(viewer);
   for (Track& track : opened.tracks) tracks.add(std::move(track));
   Panels panels(viewer, tracks, cli);

@@ -39,21 +39,6 @@ solutions:
     folder.write("order.yaml", "best_to_worst: [road, grass, mud]\n");
   }
 
-  /** Runs the sender, and when it waits, the shell's commands, which know its port as $port.
-   * All must end well. */
-  void withSender(const std::string& arguments, const std::string& commands) const {
-    folder.write("script", "cd '" + folder.path().string() +
-                               "'\nPATH='" MSO_BIN_DIR
-                               ":/usr/bin:/bin'\nsemantic-map-send --port 0 --timeout 60 " +
-                               arguments + " >log 2>&1 &\nsender=$!\n" +
-                               "until grep -q 'at port' log; do kill -0 $sender 2>&- || break; "
-                               "sleep 0.05; done\n"
-                               "port=$(sed -n 's/Waiting at port //p' log)\n" +
-                               commands + "\nstatus=$?\nwait $sender || status=\"sender $?\"\n" +
-                               "cat log\necho status $status\n");
-    const ProgramRun run = runCommand("sh '" + path("script") + "'");
-    EXPECT_TRUE(contains(run.output, "status 0\n"));
-  }
   /** Runs the sender, and when it waits, an action that knows its port. \return how it ended */
   ProgramRun withSender(const std::string& arguments,
                         const std::function<void(int port)>& action) const {
@@ -70,10 +55,12 @@ solutions:
     return run.get();
   }
   static std::string address(int port) { return "localhost:" + std::to_string(port); }
-  ProgramRun receive(int port, Words more = {}) const {
-    more.insert(more.end(), {address(port), "-f", "-o", path("r.semantic"), "--weights",
-                             path("weights.yaml"), "--solution", "road"});
-    return runProgram("semantic-map-receive", more);
+  ProgramRun ask(int port, const Words& more = {}) const {
+    return runProgram("semantic-map-receive",
+                      joined({address(port), "-f", "-o", path("r.semantic")}, more));
+  }
+  ProgramRun receive(int port, const Words& more = {}) const {
+    return ask(port, joined({"--weights", path("weights.yaml"), "--solution", "road"}, more));
   }
   /** The tree that semantic-map-compress makes of a map. */
   std::string compressed(const std::string& map, const std::string& solution,
@@ -101,7 +88,7 @@ class Asker {
   /** What comes within a while. */
   std::optional<Datagram> hear() {
     radio::Peer from;
-    const auto bytes = m_socket.receive(from, std::chrono::milliseconds(300));
+    const auto bytes = m_socket.receive(from, std::chrono::milliseconds(900));
     return bytes ? std::optional(Datagram::of(*bytes)) : std::nullopt;
   }
   /** What the answer is of a whole request with the cookie that the sender gave. */
@@ -168,8 +155,6 @@ class BadRadio {
 
 /** Not what differs, which nobody could read. */
 void expectSame(const std::string& a, const std::string& b) { EXPECT_TRUE(a == b); }
-
-const std::string kReceive = "semantic-map-receive localhost:$port ";
 
 }  // namespace
 
@@ -251,37 +236,36 @@ TEST_F(MapRadio, foldersOfTilesAreSentAsWhatTheyHoldWithoutABudgetToSpeakOf) {
                          {path(name + ".semantic"), "-o", path(name), "--tiles", "3.2"})
                   .status,
               0);
-  withSender("--memory 0 --weights weights.yaml --solution obstacles map later",
-             kReceive + "-o r.semantic");
+  const ProgramRun run =
+      withSender("--memory 0 --weights weights.yaml --solution obstacles map later",
+                 [&](int port) { succeeded(ask(port)); });
+  EXPECT_EQ(run.status, 0) << run.output;
   expectSame(folder.read("r.semantic"), compressed("later.semantic", "obstacles"));
 }
 
 TEST_F(MapRadio, enoughIsEnough) {
-  withSender("--rate 4000000 --weights weights.yaml map.semantic",
-             kReceive + "--alpha 0 --bytes 4000 -o r.semantic");
+  const ProgramRun run =
+      withSender("--rate 4000000 --weights weights.yaml map.semantic", [&](int port) {
+        succeeded(ask(port, {"--alpha", "0", "--bytes", "4000"}));
+      });
+  EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_LT(loadTree(path("r.semantic")).getNumLeafNodes(),
             loadTree(path("map.semantic")).getNumLeafNodes());
 }
 
 TEST_F(MapRadio, theSenderSaysWhatItCannotServe) {
   folder.write("other.yaml", "{name: x, relevant: {lawn: 1}, alpha: 0.1}");
-  const std::string expectRefusal = " 2>errors; test $? = 1 && ";
-  withSender("--receivers 1 map.semantic",
-             kReceive + "--weights other.yaml -o r.semantic" + expectRefusal +
-                 "grep -q 'refuses: weights:1: .*lawn' errors && " + kReceive + "-o r.semantic" +
-                 expectRefusal + "grep -q 'neither the sender' errors && " + kReceive +
-                 "--weights weights.yaml --solution rad -o r.semantic" + expectRefusal +
-                 "grep -q \"'road'\" errors && " + kReceive +
-                 "--weights weights.yaml -o r.semantic");
-}
-
-TEST_F(MapRadio, aMapThatIsThereIsNotReplaced) {
-  folder.write("kept.semantic", "of before");
-  withSender("--weights weights.yaml map.semantic",
-             kReceive +
-                 "-o kept.semantic 2>errors; test $? = 1 && grep -q 'is there already' "
-                 "errors && " +
-                 kReceive + "-o r.semantic");
+  const ProgramRun run = withSender("map.semantic", [&](int port) {
+    const std::string weights = path("weights.yaml");
+    expectRefusal(ask(port, {"--weights", path("other.yaml")}), {"refuses: weights:1: ", "lawn"});
+    expectRefusal(ask(port), {"neither the sender"});
+    expectRefusal(ask(port, {"--weights", weights, "--solution", "rad"}), {"'road'"});
+    folder.write("kept.semantic", "of before");
+    expectRefusal(runProgram("semantic-map-receive", {address(port), "-o", path("kept.semantic")}),
+                  {"is there already"});
+    succeeded(ask(port, {"--weights", weights}));
+  });
+  EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(folder.read("kept.semantic"), "of before");
 }
 
@@ -295,10 +279,13 @@ TEST_F(MapRadio, nobodyThereAndPortsInUseAreSaid) {
   EXPECT_TRUE(
       contains(runProgram("semantic-map-receive", {"localhost:x", "-o", path("r.semantic")}).errors,
                "expected HOST:PORT"));
-  withSender("--weights weights.yaml map.semantic",
-             "semantic-map-send --port $port map.semantic 2>errors; test $? = 1 && grep -q "
-             "\"port $port cannot be used\" errors && " +
-                 kReceive + "-o r.semantic");
+  const ProgramRun run = withSender("map.semantic", [&](int port) {
+    const std::string used = std::to_string(port);
+    expectRefusal(runProgram("semantic-map-send", {path("map.semantic"), "--port", used}),
+                  {"port " + used + " cannot be used"});
+    succeeded(receive(port));
+  });
+  EXPECT_EQ(run.status, 0) << run.output;
 }
 
 TEST_F(MapRadio, datagramsOfNobodyChangeNothing) {

@@ -164,7 +164,7 @@ TEST(Balances, OfABlockItsShareOfWhatIsRelevantIsRetained) {
       Definition(map, live).addRelevant(nodesAround(map, key).front(), 1, true, sums);
       ASSERT_GT(sums.all, 0);
       const float retained =
-          live.retainedAround(map_view::CompressedCells(map, live).at(key).around);
+          live.retainedAround(map_view::CellSource(map, &live).at(key).around);
       EXPECT_NEAR(retained, sums.kept / sums.all, 1e-5) << alpha << ' ' << int(id);
       between += retained > 0.01f && retained < 0.99f;
     }
@@ -175,7 +175,7 @@ TEST(Balances, OfABlockItsShareOfWhatIsRelevantIsRetained) {
 TEST(Balances, WhatIsRetainedIsGreenAndWhatIsLostRed) {
   SemanticOcTree map = randomMap(65);
   LiveCompression live(map, LiveCompression::allClasses(map));
-  const map_view::CompressedCells cells(map, live);
+  const map_view::CellSource cells(map, &live);
   map_view::CellLook look(map);
   map_view::ViewStyle style;
   style.coloring = map_view::ViewColoring::Retained;

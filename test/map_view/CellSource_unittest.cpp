@@ -60,7 +60,7 @@ semantic_octree::AbstractionOptions keepRoads() {
 
 TEST(FullCells, AreTheLeavesAndAtADepthTheCubesAroundThem) {
   const SemanticOcTree map = randomMap(1);
-  const FullCells cells(map);
+  const CellSource cells(map);
   CellLook look(map);
   for (const bool withFree : {false, true}) {
     ViewStyle style;
@@ -75,7 +75,7 @@ TEST(FullCells, AreTheLeavesAndAtADepthTheCubesAroundThem) {
 
 TEST(FullCells, AreThoseOfABoxOnly) {
   const SemanticOcTree map = randomMap(2);
-  const FullCells cells(map);
+  const CellSource cells(map);
   const CellLook look(map);
   const KeyBox box = {Eigen::Array3i(32760, 32750, 32740), Eigen::Array3i(32790, 32800, 32771)};
   std::map<CubeId, bool> expected;
@@ -89,7 +89,7 @@ TEST(FullCells, AreThoseOfABoxOnly) {
 
 TEST(FullCells, AnswerForEachVoxelAndForUnknownSpace) {
   const SemanticOcTree map = randomMap(3);
-  const FullCells cells(map);
+  const CellSource cells(map);
   std::mt19937 random(4);
   int unknown = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -107,7 +107,7 @@ TEST(FullCells, AnswerForEachVoxelAndForUnknownSpace) {
 TEST(CompressedCells, AreTheLeavesOfTheCompressedTree) {
   SemanticOcTree map = randomMap(5), other = map;
   const LiveCompression compression(map, keepRoads());
-  const CompressedCells cells(map, compression);
+  const CellSource cells(map, &compression);
   setAbstraction(other, keepRoads());
   CellLook look(map);
   for (const bool withFree : {false, true}) {
@@ -165,7 +165,7 @@ CellLook withUnknownSpace(const SemanticOcTree& map, const Eigen::AlignedBox3d& 
 
 TEST(UnknownSpace, IsWhatNoLeafHoldsWithinTheirBoundingBoxAndTheClippingBox) {
   const SemanticOcTree map = randomMap(15);
-  const FullCells cells(map);
+  const CellSource cells(map);
   for (const auto& clip :
        {ViewStyle::everywhere(),
         Eigen::AlignedBox3d(Eigen::Vector3d(-8.33, -90, -4.1), Eigen::Vector3d(11.5, 8.71, 3))}) {
@@ -191,7 +191,7 @@ TEST(UnknownSpace, IsWhatNoLeafHoldsWithinTheirBoundingBoxAndTheClippingBox) {
 
 TEST(UnknownSpace, IsCoarseWhereAllOfACubeIsUnknown) {
   const SemanticOcTree map = randomMap(16);
-  const FullCells cells(map);
+  const CellSource cells(map);
   constexpr int kDepth = 13;
   const auto cubes = shown(cells, withUnknownSpace(map, ViewStyle::everywhere()), kDepth),
              occupied = shown(cells, CellLook(map), kDepth);
@@ -216,7 +216,7 @@ TEST(UnknownSpace, IsCoarseWhereAllOfACubeIsUnknown) {
 
 TEST(CellLook, HidesClassesAndWhatIsAbove) {
   const SemanticOcTree map = randomMap(6);
-  const FullCells cells(map);
+  const CellSource cells(map);
   CellLook look(map);
   ViewStyle style;
   style.hiddenClasses = {false, true, false, false};
@@ -232,7 +232,7 @@ TEST(CellLook, HidesClassesAndWhatIsAbove) {
 TEST(CellLook, ColorsSayWhatTheyShould) {
   const SemanticOcTree map = randomMap(7);
   CellLook look(map);
-  const ViewCell road = FullCells(map).at(voxelOfClass(map, 1));
+  const ViewCell road = CellSource(map).at(voxelOfClass(map, 1));
   ASSERT_EQ(look.classOf(road), 1);
   EXPECT_EQ(look.colorOf(road), map.classes().color(1));
   ViewStyle style;
@@ -285,7 +285,7 @@ TEST(CellLook, GainFallsWithEachLook) {
     CellLook look(map);
     look.setStyle(style);
     const octomap::OcTreeKey key = map.coordToKey(1.01, 0.01, 0.01);
-    const Color c = look.colorOf(FullCells(map).at({key[0], key[1], key[2]}));
+    const Color c = look.colorOf(CellSource(map).at({key[0], key[1], key[2]}));
     const int greenness = c.g - c.r;
     EXPECT_GE(greenness, before) << looks << " looks";
     before = looks == 1 ? greenness + 50 : greenness;
@@ -296,7 +296,7 @@ TEST(CellLook, GainFallsWithEachLook) {
 TEST(CellAnswer, SaysWhatTheMapSays) {
   SemanticOcTree map = randomMap(8);
   const Eigen::Array3i key = voxelOfClass(map, 1);
-  const ViewCell road = FullCells(map).at(key);
+  const ViewCell road = CellSource(map).at(key);
   const CellAnswer answer = answerOf(road, map);
   EXPECT_EQ(answer.state, "occupied, road");
   EXPECT_DOUBLE_EQ(answer.size, 0.2);
@@ -308,5 +308,5 @@ TEST(CellAnswer, SaysWhatTheMapSays) {
   double sum = 0;
   for (const auto& share : answer.shares) sum += share.probability;
   EXPECT_NEAR(sum, 1, 0.003);
-  EXPECT_EQ(answerOf(FullCells(map).at({100, 100, 100}), map).state, "unknown");
+  EXPECT_EQ(answerOf(CellSource(map).at({100, 100, 100}), map).state, "unknown");
 }

@@ -33,7 +33,7 @@ std::set<CubeId> leavesOf(const SemanticOcTree& map, const LiveCompression& live
   style.freeSpace = true;
   look.setStyle(style);
   std::set<CubeId> leaves;
-  map_view::CompressedCells(map, live).forEachShown(
+  map_view::CellSource(map, &live).forEachShown(
       KeyBox::everything(), semantic_octree::kTreeDepth, look, [&](const map_view::ViewCell& cell) {
         EXPECT_TRUE(leaves.insert(cubeOf(cell.lowest, cell.depth)).second);
       });

@@ -31,24 +31,6 @@ Eigen::Vector2d pixelOf(const OrbitCamera& camera, const Eigen::Vector3d& p) {
           kHeight / 2.0 - scale * to.dot(camera.up())};
 }
 
-TEST(OrbitCamera, SaysWhereAPlaceIsSeen) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> meters(-40, 40);
-  int behind = 0;
-  for (int i = 0; i < 200; ++i) {
-    const OrbitCamera camera = someCamera(meters(random) * 4, meters(random) * 2);
-    const Eigen::Vector3d place(meters(random), meters(random), meters(random));
-    const auto pixel = camera.pixelOf(place, kWidth, kHeight);
-    const bool isAhead = (place - camera.position()).dot(camera.forward()) > 0;
-    ASSERT_EQ(pixel.has_value(), isAhead);
-    behind += !isAhead;
-    if (pixel) {
-      EXPECT_LT((*pixel + Eigen::Vector2d(0.5, 0.5) - pixelOf(camera, place)).norm(), 1e-6);
-    }
-  }
-  EXPECT_GT(behind, 10);
-}
-
 TEST(OrbitCamera, LooksNorthUpFromAboveAndEastFromTheWest) {
   const OrbitCamera top = someCamera(-90, 90);
   EXPECT_TRUE(top.position().isApprox(Eigen::Vector3d(3, -4, 27), 1e-9));
@@ -156,7 +138,7 @@ Eigen::Vector2d placeAbove(const SemanticOcTree& map, ClassId id) {
 
 TEST(RayCast, HitsWhatTheMapsOwnRayHits) {
   const SemanticOcTree map = randomMap(11);
-  const FullCells cells(map);
+  const CellSource cells(map);
   const CellLook look(map);
   std::mt19937 random(12);
   int hits = 0, others = 0;
@@ -175,7 +157,7 @@ TEST(RayCast, HitsWhatTheMapsOwnRayHits) {
 
 TEST(RayCast, BeginsOutsideOfTheMapAndMayMissIt) {
   const SemanticOcTree map = randomMap(13);
-  const FullCells cells(map);
+  const CellSource cells(map);
   const CellLook look(map);
   const double far = 0.2 * 40000;
   const Eigen::Vector2d place = placeAbove(map, 1);
@@ -193,7 +175,7 @@ TEST(RayCast, HitsCompressedCellsWhereTheyAreDrawn) {
   semantic_octree::AbstractionOptions options;
   options.weights = {{{"road", 1, {{1}}}}, 0.05};
   const LiveCompression compression(map, options);
-  const CompressedCells cells(map, compression);
+  const CellSource cells(map, &compression);
   const CellLook look(map);
   const Eigen::Vector2d place = placeAbove(map, 1);
   const auto hit = firstShown(cells, look, {{place.x(), place.y(), 9}, {0, 0, -1}});

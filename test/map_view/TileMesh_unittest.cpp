@@ -85,7 +85,7 @@ std::set<Tile> tilesOf(const SemanticOcTree& map, int depth) {
 TEST(TileMesh, HasEachSideThatIsOpenOnceAndNoneThatIsHidden) {
   for (const unsigned seed : {31u, 32u}) {
     const SemanticOcTree map = randomMap(seed);
-    const FullCells cells(map);
+    const CellSource cells(map);
     const CellLook look(map);
     std::map<Side, int> drawn;
     for (const Tile& tile : tilesOf(map, kFinestTiles))
@@ -108,7 +108,7 @@ TEST(TileMesh, OfLargeCellsFitsTogetherFromTileToTile) {
   options.weights = {{{"road", 1, {{1}}}}, 0.3};
   options.blockSize = 25.6;  // two tiles
   const LiveCompression compression(map, options);
-  const CompressedCells cells(map, compression);
+  const CellSource cells(map, &compression);
   const CellLook look(map);
   double area = 0, expected = 0;
   std::set<Side> sides;
@@ -130,7 +130,7 @@ TEST(TileMesh, OfLargeCellsFitsTogetherFromTileToTile) {
 
 TEST(TileMesh, OfCoarseTilesHasTheSidesOfTheirCells) {
   const SemanticOcTree map = randomMap(34);
-  const FullCells cells(map);
+  const CellSource cells(map);
   const CellLook look(map);
   const int depth = kFinestTiles - 2;  // cells of 4 voxels
   std::set<std::array<int, 3>> occupied;
@@ -150,7 +150,7 @@ TEST(TileMesh, OfCoarseTilesHasTheSidesOfTheirCells) {
 
 TEST(TileMesh, ShowsUnknownSpaceWhereItEnds) {
   const SemanticOcTree map = randomMap(38, 1);
-  const FullCells cells(map);
+  const CellSource cells(map);
   CellLook look(map);
   ViewStyle style;
   style.unknownSpace = true;
@@ -189,7 +189,7 @@ TEST(TileMesh, ShowsUnknownSpaceWhereItEnds) {
 
 TEST(TileMesh, SidesThatLookAwayFromAPlaceAreNotSeenFromThere) {
   const SemanticOcTree map = randomMap(37);
-  const FullCells cells(map);
+  const CellSource cells(map);
   const CellLook look(map);
   std::mt19937 random(38);
   std::uniform_real_distribution<double> unit(-15, 15);

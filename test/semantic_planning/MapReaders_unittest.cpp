@@ -82,7 +82,7 @@ class Viewer : public Reader {
   }
 
  private:
-  map_view::FullCells m_cells;
+  map_view::CellSource m_cells;
   map_view::CellLook m_look{m_cells.map()};
   MapFollower m_follower;
 };

@@ -1,6 +1,5 @@
 #include "Layer.h"
 
-#include <map_operations/MapOperations.h>
 #include <strict_files/Words.h>
 
 #include <algorithm>
@@ -11,59 +10,21 @@
 namespace map_window {
 
 namespace fs = std::filesystem;
-using semantic_octree::kTreeDepth;
 using semantic_octree::MapFolder;
 using semantic_octree::SemanticOcTree;
 
 namespace {
 
-constexpr int kMostLevels = 8;
-/** The share of the budget for tiles while a coarser map is made of them. */
-constexpr double kShareOfTiles = 0.25;
-/** Bytes of a leaf, as in maps of streets. */
-constexpr std::size_t kBytesOfLeaf = 6;
-
-/** Levels to leave out so that the map probably fits. */
-int levelsFor(const SemanticOcTree& map, std::size_t bytes) {
-  std::array<std::size_t, kTreeDepth + 1> nodes{}, leaves{};
-  for (auto node = map.begin_tree(kTreeDepth - 1); node != map.end_tree(); ++node) {
-    ++nodes[node.getDepth()];
-    leaves[node.getDepth()] += (*node).isLeaf();
-  }
-  for (int levels = 1; levels < kMostLevels; ++levels) {
-    const std::size_t depth = std::size_t(kTreeDepth - levels);
-    std::size_t number = nodes[depth];
-    for (std::size_t d = 0; d < depth; ++d) number += leaves[d];
-    if (number * kBytesOfLeaf <= bytes) return levels;
-  }
-  return kMostLevels;
-}
-
-SemanticOcTree coarseEnough(const SemanticOcTree& map, std::size_t bytes) {
-  for (int levels = levelsFor(map, bytes);; ++levels) {
-    SemanticOcTree coarse = semantic_octree::coarsened(map, levels);
-    if (levels == kMostLevels || coarse.memoryUsage() <= bytes) return coarse;
-  }
-}
-
-/** \param note is set to what there is to say of it */
-SemanticOcTree openFolder(const fs::path& folder, const WantedTiles& wanted, std::string& note) {
-  const double bytes = wanted.memory * 1e6;
+SemanticOcTree openFolder(const fs::path& folder, const WantedTiles& wanted) try {
   semantic_octree::MapFolderOptions options;
-  options.memory = kShareOfTiles * wanted.memory;
+  options.memory = wanted.memory;
   options.wanted = [&](const Eigen::AlignedBox3d& cube) { return cube.intersects(wanted.box); };
   SemanticOcTree map = MapFolder::emptyMap(folder);
-  auto tiles = std::make_unique<MapFolder>(map, folder, MapFolder::Access::Read, options);
-  try {
-    tiles->bringAll(std::size_t(bytes));
-  } catch (const std::runtime_error& tooLarge) {
-    SemanticOcTree coarse = coarseEnough(map, std::size_t((1 - kShareOfTiles) * bytes));
-    note = strict_files::messageOf(tooLarge) + ": shown with voxels of " +
-           strict_files::textOf(coarse.getResolution()) + " m";
-    return coarse;
-  }
-  tiles.reset();
+  MapFolder(map, folder, MapFolder::Access::Read, options)
+      .bringAll(std::size_t(wanted.memory * 1e6));
   return map;
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(strict_files::messageOf(e) + ": --clip shows a part");
 }
 
 /** The name of a file or of a folder. */
@@ -84,30 +45,22 @@ std::pair<float, float> mostOf(std::vector<float>& values) {
 
 Layer::Layer(const std::filesystem::path& file, const WantedTiles& wanted)
     : m_name(nameOf(file)),
-      m_own(std::make_unique<SemanticOcTree>(
-          MapFolder::isAt(file) ? openFolder(file, wanted, m_note) : inputs::loadMap(file))),
+      m_own(std::make_unique<SemanticOcTree>(MapFolder::isAt(file) ? openFolder(file, wanted)
+                                                                   : inputs::loadMap(file))),
       m_map(m_own.get()),
       m_look(*m_map),
-      m_cells(std::make_unique<map_view::FullCells>(*m_map)) {
+      m_cells(*m_map) {
   count();
 }
 
 Layer::Layer(const std::string& name, const SemanticOcTree& map)
-    : m_name(name), m_map(&map), m_look(map), m_cells(std::make_unique<map_view::FullCells>(map)) {
+    : m_name(name), m_map(&map), m_look(map), m_cells(map) {
   count();
 }
 
 void Layer::grown() {
   m_look.forget();
   count();
-}
-
-void Layer::showCompressed(const map_view::LiveCompression* compression) {
-  if (compression)
-    m_cells = std::make_unique<map_view::CompressedCells>(*m_map, *compression);
-  else
-    m_cells = std::make_unique<map_view::FullCells>(*m_map);
-  m_look.setCompression(compression);
 }
 
 void Layer::count() {

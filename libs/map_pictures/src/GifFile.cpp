@@ -14,88 +14,36 @@ namespace {
 
 constexpr std::size_t kMostColors = 63;
 
-/** Pixels of nearly one color. */
-struct Cell {
-  int index = 0, count = 0;
-  cv::Vec3d sum;
-
-  double mean(int channel) const { return sum[channel] / count; }
-};
-
-using Cells = std::vector<Cell>;
-
-/** Some of the cells, for which one color will stand. */
-struct Box {
-  Cells::iterator begin, end;
-  int channel = 0;    ///< in which they differ most
-  double spread = 0;  ///< how much, times the root of the number of pixels
-
-  Box(Cells::iterator first, Cells::iterator last) : begin(first), end(last) {
-    double count = 0;
-    for (auto cell = begin; cell != end; ++cell) count += cell->count;
-    for (int c = 0; c < 3; ++c) {
-      const auto [low, high] = std::minmax_element(
-          begin, end, [c](const Cell& a, const Cell& b) { return a.mean(c) < b.mean(c); });
-      const double range = (high->mean(c) - low->mean(c)) * std::sqrt(count);
-      if (range > spread) spread = range, channel = c;
-    }
-  }
-
-  /** Where half of the pixels are on each side; both sides have cells. */
-  Cells::iterator median() const {
-    const int c = channel;
-    std::sort(begin, end, [c](const Cell& a, const Cell& b) { return a.mean(c) < b.mean(c); });
-    double count = 0, before = 0;
-    for (auto cell = begin; cell != end; ++cell) count += cell->count;
-    auto middle = begin;
-    while (middle != end - 1 && before + middle->count <= count / 2) before += (middle++)->count;
-    return std::max(middle, begin + 1);
-  }
-};
-
-std::vector<Box> boxesOf(Cells& cells) {
-  if (cells.empty()) return {};
-  std::vector<Box> boxes = {Box(cells.begin(), cells.end())};
-  while (boxes.size() < kMostColors) {
-    const auto widest = std::max_element(
-        boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.spread < b.spread; });
-    if (widest->spread <= 0) break;
-    const auto middle = widest->median();
-    const Box upper(middle, widest->end);
-    *widest = Box(widest->begin, middle);
-    boxes.push_back(upper);
-  }
-  return boxes;
-}
-
-cv::Vec3b meanOf(const Box& box) {
-  cv::Vec3d sum;
-  double count = 0;
-  for (auto cell = box.begin; cell != box.end; ++cell) sum += cell->sum, count += cell->count;
-  return sum / count;
-}
-
-/** At most 63 colors that stand for all of a picture, found by median cut. */
+/** At most 63 colors that stand for all of a picture. */
 class GifPalette {
  public:
   /** \param picture BGR \param mask 8 bit, of its size: pixels that count */
   GifPalette(const cv::Mat& picture, const cv::Mat& mask) : m_index(1 << 15, 0) {
-    std::vector<Cell> all(1 << 15);
+    std::vector<cv::Vec4d> cells(1 << 15);  // sum of colors, and their number
     for (int row = 0; row < picture.rows; ++row)
       for (int col = 0; col < picture.cols; ++col) {
-        if (!mask.at<std::uint8_t>(row, col)) continue;
-        const auto& color = picture.at<cv::Vec3b>(row, col);
-        Cell& cell = all[cellOf(color)];
-        cell.index = cellOf(color);
-        cell.sum += cv::Vec3d(color), ++cell.count;
+        const auto& c = picture.at<cv::Vec3b>(row, col);
+        if (mask.at<std::uint8_t>(row, col)) cells[cellOf(c)] += cv::Vec4d(c[0], c[1], c[2], 1);
       }
-    all.erase(std::remove_if(all.begin(), all.end(), [](const Cell& cell) { return !cell.count; }),
-              all.end());
-    for (const Box& box : boxesOf(all)) {
-      for (auto cell = box.begin; cell != box.end; ++cell)
-        m_index[cell->index] = std::uint8_t(m_colors.size());
-      m_colors.push_back(meanOf(box));
+    const double weight = 2000.0 / cv::countNonZero(mask);
+    cv::Mat samples, labels, centers;
+    std::vector<std::pair<std::size_t, int>>
+        places;  // cells that are there: the first sample of each
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const cv::Vec4d& cell = cells[i];
+      if (cell[3] == 0) continue;
+      places.emplace_back(i, samples.rows);
+      const cv::Vec3d mean = cv::Vec3d(cell.val) / cell[3];
+      for (int n = 0; n <= int(weight * cell[3]); ++n) samples.push_back(cv::Vec3f(mean));
     }
+    const int colors = int(std::min(kMostColors, places.size()));
+    if (colors == 0) return;
+    cv::setRNGSeed(0);
+    cv::kmeans(samples, colors, labels, {cv::TermCriteria::COUNT, 10, 0}, 1, cv::KMEANS_PP_CENTERS,
+               centers);
+    centers.convertTo(centers, CV_8U);
+    for (int i = 0; i < colors; ++i) m_colors.push_back(cv::Vec3b(centers.ptr(i)));
+    for (const auto& [cell, sample] : places) m_index[cell] = std::uint8_t(labels.at<int>(sample));
   }
 
   /** BGR. */
@@ -105,7 +53,9 @@ class GifPalette {
 
  private:
   /** Colors that differ in the last 3 bits of a channel only are one. */
-  static int cellOf(const cv::Vec3b& c) { return c[0] >> 3 << 10 | c[1] >> 3 << 5 | c[2] >> 3; }
+  static std::size_t cellOf(const cv::Vec3b& c) {
+    return std::size_t(c[0] >> 3 << 10 | c[1] >> 3 << 5 | c[2] >> 3);
+  }
 
   std::vector<cv::Vec3b> m_colors;
   std::vector<std::uint8_t> m_index;

@@ -15,6 +15,11 @@ class ByteWriter {
   void value(const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
+  /** Seven bits a byte, the lowest first. */
+  void number(std::uint64_t n) {
+    for (; n > 0x7f; n >>= 7) value(static_cast<std::uint8_t>(n | 0x80));
+    value(static_cast<std::uint8_t>(n));
+  }
   void flag(bool b) { value(static_cast<std::uint8_t>(b)); }
   void text(const std::string& text) {
     value(static_cast<std::uint32_t>(text.size()));
@@ -33,7 +38,7 @@ class ByteWriter {
 /** \throw std::runtime_error the bytes end too early. */
 class ByteReader {
  public:
-  explicit ByteReader(const std::string& bytes) : m_bytes(bytes) {}
+  explicit ByteReader(const std::string& bytes, std::size_t at = 0) : m_bytes(bytes), m_next(at) {}
   template <typename T>
   void value(T& value) {
     need(sizeof(T));
@@ -45,6 +50,15 @@ class ByteReader {
     T taken;
     value(taken);
     return taken;
+  }
+  std::uint64_t number() {
+    std::uint64_t n = 0;
+    for (int shift = 0; shift < 63; shift += 7) {
+      const auto byte = take<std::uint8_t>();
+      n |= std::uint64_t(byte & 0x7f) << shift;
+      if (byte < 0x80) return n;
+    }
+    throw std::runtime_error("altered: a number that does not end");
   }
   void flag(bool& b) { b = take<std::uint8_t>() != 0; }
   void text(std::string& text) {
@@ -66,7 +80,7 @@ class ByteReader {
   }
 
   const std::string& m_bytes;
-  std::size_t m_next = 0;
+  std::size_t m_next;
 };
 
 }  // namespace semantic_octree

@@ -20,8 +20,7 @@ struct MapReceiver::State {
 
   StreamKind kind;
   StreamTree tree;
-  /** Mask and leaves of octets whose cubes are not there yet, by the cube. */
-  std::multimap<CellPath, std::pair<std::uint8_t, std::string>> waiting;
+  std::multimap<CellPath, TreePart> waiting;  ///< octets whose cubes are not there yet, by these
 
   bool begin(const PacketHeader& h);
   /** If it fails, the packet has not come: what was placed is placed again, to no effect. */
@@ -113,8 +112,7 @@ void MapReceiver::State::apply(const std::string& content) {
 
 void MapReceiver::State::place(const TreePart& part) {
   if (!tree.apply(part, header.revision)) {
-    char leaves[kMostLeafBytes];
-    waiting.emplace(part.cell, std::pair(part.mask, std::string(leaves, putLeaves(leaves, part))));
+    waiting.emplace(part.cell, part);
   } else if (!part.isOctet) {
     release(part.cell);
   } else {
@@ -128,9 +126,7 @@ void MapReceiver::State::release(const CellPath& cell) {
   if (n > 0 && !tree.has(cell)) return;
   for (; n > 0; --n) {
     const auto first = waiting.find(cell);
-    TreePart octet{cell, true, first->second.first, {}};
-    getLeaves(first->second.second.data(), octet);
-    place(octet);
+    place(first->second);
     waiting.erase(first);
   }
 }

@@ -3,7 +3,6 @@
 #include <map_streams/MapStream.h>
 #include <semantic_octree/TreeFile.h>
 #include <semantic_octree/store/TreeFormat.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -11,7 +10,6 @@
 #include <deque>
 #include <sstream>
 #include <stdexcept>
-#include <streambuf>
 
 #include "Bytes.h"
 
@@ -98,34 +96,42 @@ class Packer {
 
   std::vector<PacketContent> packets() {
     std::vector<PacketContent> packets;
-    for (std::size_t at = 0; at != m_parts.size();) {
-      std::size_t end = at + numThatFit(at);
-      for (std::size_t cut = end; cut != at; --cut)
-        if (cut == m_parts.size() || m_parts.begins(cut)) {
-          end = cut;
-          break;
-        }
-      packets.push_back({m_coder.encode(m_window.sorted(at, end)), prefixBefore(end)});
-      at = end;
-    }
+    for (std::size_t at = 0; at != m_parts.size();) packets.push_back(packetAt(at));
     return packets;
   }
 
  private:
-  std::size_t sizeOf(std::size_t at, std::size_t number) {
-    return m_coder.encode(m_window.sorted(at, at + number)).size();
+  std::string encoded(std::size_t at, std::size_t end) {
+    return m_coder.encode(m_window.sorted(at, end));
   }
-  /** Up to a 64th; one always does. */
+  /** As many parts as fit, nearly. \param at the first, then the first behind them */
+  PacketContent packetAt(std::size_t& at) {
+    PacketContent packet;
+    std::size_t end = endOf(at, numThatFit(at));
+    while ((packet.bytes = encoded(at, end)).size() > m_maxBytes && end > at + 1)
+      end = endOf(at, end - at - 1);
+    at = end;
+    packet.prefix = prefixBefore(at);
+    return packet;
+  }
+  /** Up to a 32nd; one always does. */
   std::size_t numThatFit(std::size_t at) {
     const std::size_t most = std::min<std::size_t>(m_parts.size() - at, UINT16_MAX);
     std::size_t fits = 1, exceeds = most + 1;
-    for (std::size_t n = m_last; exceeds - fits > 1 + fits / 64;) {
+    for (std::size_t n = m_last; exceeds - fits > 1 + fits / 32;) {
       n = std::clamp(n, fits + 1, exceeds - 1);
-      const std::size_t size = sizeOf(at, n);
+      const std::size_t size = encoded(at, at + n).size();
       (size <= m_maxBytes ? fits : exceeds) = n;
-      n = n * m_maxBytes / std::max<std::size_t>(size, 1);
+      n = n * m_maxBytes / size;
     }
     return m_last = fits;
+  }
+  /** Behind at most so many parts, if possible where something begins. */
+  std::size_t endOf(std::size_t at, std::size_t number) const {
+    const std::size_t last = at + std::min({number, m_parts.size() - at, std::size_t(UINT16_MAX)});
+    for (std::size_t end = last; end != at; --end)
+      if (end == m_parts.size() || m_parts.begins(end)) return end;
+    return last;
   }
   StreamPrefix prefixBefore(std::size_t end) const {
     StreamPrefix prefix;
@@ -196,29 +202,14 @@ void codeDescription(Bytes& bytes, Description& d) {
 }  // namespace
 
 std::string StreamDescription::compressed() const {
-  ByteWriter plain, result;
+  ByteWriter plain;
   codeDescription(plain, *this);
   if (!stated.factors.empty()) plain.list(stated.factors);
-  uLongf size = compressBound(plain.bytes.size());
-  std::string packed(size, '\0');
-  compress2(reinterpret_cast<Bytef*>(&packed[0]), &size,
-            reinterpret_cast<const Bytef*>(plain.bytes.data()), plain.bytes.size(),
-            Z_BEST_COMPRESSION);
-  packed.resize(size);
-  result.value(static_cast<std::uint32_t>(plain.bytes.size()));
-  return result.bytes + packed;
+  return packed(plain.bytes);
 }
 
 StreamDescription StreamDescription::of(const std::string& compressed) {
-  const auto expected = ByteReader(compressed).take<std::uint32_t>();
-  if (expected > kMaxDescription) throw std::runtime_error("altered: a description too long");
-  std::string plain(expected, '\0');
-  uLongf size = expected;
-  const auto* from = reinterpret_cast<const Bytef*>(compressed.data()) + sizeof(expected);
-  if (uncompress(reinterpret_cast<Bytef*>(&plain[0]), &size, from,
-                 compressed.size() - sizeof(expected)) != Z_OK ||
-      size != expected)
-    throw std::runtime_error("altered: a description that cannot be unpacked");
+  const std::string plain = unpacked(compressed, kMaxDescription);
   ByteReader reader(plain);
   StreamDescription d;
   codeDescription(reader, d);
@@ -251,32 +242,9 @@ std::string fileOf(const SemanticOcTree& map) {
   return out.str();
 }
 
-namespace {
-
-/** Keeps the checksum of what is written to it, and nothing else. */
-class ChecksumBuffer : public std::streambuf {
- public:
-  std::uint32_t checksum() const { return m_checksum; }
-
- private:
-  int_type overflow(int_type c) override {
-    const char byte = traits_type::to_char_type(c);
-    return xsputn(&byte, 1), traits_type::not_eof(c);
-  }
-  std::streamsize xsputn(const char* bytes, std::streamsize n) override {
-    m_checksum = extendCrc(m_checksum, bytes, static_cast<std::size_t>(n));
-    return n;
-  }
-  std::uint32_t m_checksum = 0;
-};
-
-}  // namespace
-
 std::uint32_t checksumOf(const SemanticOcTree& map) {
-  ChecksumBuffer file;
-  std::ostream out(&file);
-  writeTree(out, map);
-  return file.checksum();
+  const std::string file = fileOf(map);
+  return extendCrc(0, file.data(), file.size());
 }
 
 std::vector<PacketContent> packetsOf(const TreeParts& parts, const PartCoder& coder,
@@ -301,7 +269,7 @@ namespace {
  * bytes), payload. */
 using DatagramMark = std::array<char, 2>;
 constexpr DatagramMark kMark{'S', 'O'};
-constexpr std::uint8_t kStreamVersion = 3;
+constexpr std::uint8_t kStreamVersion = 4;
 constexpr std::size_t kDatagramHeaderBytes = 12;
 
 std::uint32_t crcOf(const std::string& bytes) {  // behind its place
@@ -351,8 +319,8 @@ Datagram Datagram::of(const std::string& bytes) {
 namespace {
 
 using TreeMark = std::array<char, 4>;
-// The last one is the version: 2 where classes have factors.
-constexpr TreeMark kTreeMark{'S', 'O', 'T', 1}, kFactorsMark{'S', 'O', 'T', 2};
+// The last one is the version: 4 where classes have factors.
+constexpr TreeMark kTreeMark{'S', 'O', 'T', 3}, kFactorsMark{'S', 'O', 'T', 4};
 
 template <class Bytes, class Message>
 void codeMessage(Bytes& bytes, Message& m) {

@@ -4,7 +4,7 @@
 #include <semantic_octree/store/TreeBuilder.h>
 
 #include <algorithm>
-#include <cstring>
+#include <stdexcept>
 
 namespace semantic_octree {
 namespace {
@@ -18,18 +18,6 @@ struct StreamCursor {
   LeafContent content() const { return contentOf(node, 0); }  // a leaf's needs no classes
   StreamCursor child(int i) const { return {isLeaf() ? node : node.child(i)}; }
 };
-
-template <typename T>
-char* put(char* to, const T& value) {
-  std::memcpy(to, &value, sizeof(T));
-  return to + sizeof(T);
-}
-
-template <typename T>
-const char* get(const char* from, T& value) {
-  std::memcpy(&value, from, sizeof(T));
-  return from + sizeof(T);
-}
 
 bool isInnerOctant(const BlockContent& block, int octant) {
   return octantOf(block.known, octant) != 0 && !(block.leafOctants >> octant & 1);
@@ -59,24 +47,31 @@ CellPath CellPath::of(const Cube& cube) {
   return CellPath{tileCode(cube.lowest), kTreeDepth}.above(cube.depth);
 }
 
-char* putLeaves(char* to, const TreePart& part) {
-  for (int i = 0; i < 8; ++i) {
-    if (!(part.mask >> i & 1)) continue;
-    const StreamLeaf& leaf = part.leaves[i];
-    to = put(to, kindOf(leaf));
-    if (leaf) to = put(to, leaf->value);
-    if (leaf && leaf->record) to = put(to, *leaf->record);
+void put(ByteWriter& to, const StreamLeaf& leaf) {
+  const ClassRecord* record = leaf ? leaf->recordOrNull() : nullptr;
+  to.value(static_cast<std::uint8_t>(record ? 2 + record->count : leaf.has_value()));
+  if (leaf) to.value(leaf->value);
+  if (!record) return;
+  to.value(record->rest);
+  for (int i = 0; i < record->count; ++i) {
+    to.value(record->ids[i]);
+    to.value(static_cast<Units>(record->logOdds[i] - record->rest));
   }
-  return to;
 }
 
-void getLeaves(const char* from, TreePart& part) {
-  for (int i = 0; i < 8; ++i) {
-    if (!(part.mask >> i & 1)) continue;
-    std::uint8_t kind = 0;
-    from = get(from, kind);
-    if (kind > 0) from = get(from, part.leaves[i].emplace().value);
-    if (kind > 1) from = get(from, part.leaves[i]->record.emplace());
+void get(ByteReader& from, StreamLeaf& leaf) {
+  leaf.reset();
+  const int kind = from.take<std::uint8_t>();
+  if (kind > 5) throw std::runtime_error("altered: a leaf that cannot be");
+  if (kind > 0) from.value(leaf.emplace().value);
+  if (kind < 2) return;
+  ClassRecord& record = leaf->record.emplace();
+  record = {};
+  record.count = static_cast<std::uint8_t>(kind - 2);
+  from.value(record.rest);
+  for (int i = 0; i < record.count; ++i) {
+    from.value(record.ids[i]);
+    record.logOdds[i] = static_cast<Units>(record.rest + from.take<Units>());
   }
 }
 

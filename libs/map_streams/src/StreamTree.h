@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "Bytes.h"
+
 namespace semantic_octree {
 
 /** A cube by its path from the root, three bits a level (the number of a child); the last level's
@@ -34,10 +36,10 @@ struct CellPath {
 
 /** A leaf as it travels, or no node. */
 using StreamLeaf = std::optional<LeafContent>;
-/** No node, a leaf without a class record, one with it. */
-inline std::uint8_t kindOf(const StreamLeaf& leaf) {
-  return static_cast<std::uint8_t>(leaf ? 1 + leaf->record.has_value() : 0);
-}
+/** As bytes: 0 for no node, 1 for a leaf without a class record, 2 for one with it; what it holds.
+ */
+void put(ByteWriter& to, const StreamLeaf& leaf);
+void get(ByteReader& from, StreamLeaf& leaf);
 
 /** What is said of a cube at once. */
 struct TreePart {
@@ -49,11 +51,12 @@ struct TreePart {
   std::array<StreamLeaf, 8> leaves;
 };
 
-/** The leaves that a part's mask names, one behind the other: not much more than what they say.
- * \return where they end, at most kMostLeafBytes on */
-char* putLeaves(char* to, const TreePart& part);
-void getLeaves(const char* from, TreePart& part);
-constexpr std::size_t kMostLeafBytes = 8 * (1 + sizeof(Units) + sizeof(ClassRecord));
+/** Calls visit(leaf) for those that a part's mask names. */
+template <class Part, class Visit>
+void forEachLeaf(Part& part, const Visit& visit) {
+  for (int i = 0; i < 8; ++i)
+    if (part.mask >> i & 1) visit(part.leaves[i]);
+}
 
 /** A tree of which more and more becomes known: what a receiver has, and what a sender knows that
  * it will have. It is kept as a map is. */

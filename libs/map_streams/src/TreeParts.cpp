@@ -6,16 +6,17 @@
 namespace semantic_octree {
 
 void PartList::add(const TreePart& part, std::size_t step, bool begins) {
-  if (m_used + kMostLeafBytes > kChunk) {
-    m_chunks.push_back(std::make_unique<char[]>(kChunk));
-    m_used = 0;
+  if (m_chunks.empty() || m_chunks.back().bytes.size() > kChunk) {
+    m_chunks.emplace_back();
+    m_chunks.back().bytes.reserve(kChunk + kMostOfPart);
   }
-  m_entries.push_back(
-      {part.cell.path, static_cast<std::uint32_t>(step),
-       static_cast<std::uint32_t>(m_chunks.size() - 1), static_cast<std::uint32_t>(m_used),
-       static_cast<std::uint8_t>(part.cell.depth), part.mask, part.isOctet, begins});
-  char* const chunk = m_chunks.back().get();
-  m_used = static_cast<std::size_t>(putLeaves(chunk + m_used, part) - chunk);
+  ByteWriter& chunk = m_chunks.back();
+  m_entries.push_back({part.cell.path, static_cast<std::uint32_t>(step),
+                       static_cast<std::uint32_t>(m_chunks.size() - 1),
+                       static_cast<std::uint32_t>(chunk.bytes.size()),
+                       static_cast<std::uint8_t>(part.cell.depth), part.mask, part.isOctet,
+                       begins});
+  forEachLeaf(part, [&](const StreamLeaf& leaf) { put(chunk, leaf); });
 }
 
 void PartList::sort() {
@@ -30,7 +31,8 @@ TreePart PartList::part(std::size_t i) const {
   part.cell = {e.path, e.depth};
   part.isOctet = e.isOctet;
   part.mask = e.mask;
-  getLeaves(m_chunks[e.chunk].get() + e.at, part);
+  ByteReader chunk(m_chunks[e.chunk].bytes, e.at);
+  forEachLeaf(part, [&](StreamLeaf& leaf) { get(chunk, leaf); });
   return part;
 }
 

@@ -25,7 +25,7 @@ class PartList {
   bool begins(std::size_t i) const { return m_entries[i].begins; }
 
  private:
-  static constexpr std::size_t kChunk = 1 << 20;  // bytes
+  static constexpr std::size_t kChunk = 1 << 20, kMostOfPart = 128;  // bytes
 
   struct Entry {
     std::uint64_t path;  ///< of the part's cell
@@ -36,8 +36,7 @@ class PartList {
   };
 
   std::deque<Entry> m_entries;
-  std::vector<std::unique_ptr<char[]>> m_chunks;  ///< leaves, one behind the other
-  std::size_t m_used = kChunk;                    ///< of the last one
+  std::vector<ByteWriter> m_chunks;  ///< leaves, one behind the other
 };
 
 /** What leads from the map that a receiver has to the compressed tree of another map. */

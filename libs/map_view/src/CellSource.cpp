@@ -164,20 +164,18 @@ void forEachOccupiedLeaf(const SemanticOcTree& map, const CellSource::Visit& f) 
   walk(walk, MapNode(map));
 }
 
-void FullCells::forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
-                             const Visit& visit) const {
-  if (!m_map.empty()) Walk<MapNode>(box, maxDepth, look, visit).walk(MapNode(m_map));
+void CellSource::forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
+                              const Visit& visit) const {
+  if (m_map->empty()) return;
+  if (m_compression)
+    Walk<CompressedNode>(box, maxDepth, look, visit).walk(CompressedNode(*m_map, *m_compression));
+  else
+    Walk<MapNode>(box, maxDepth, look, visit).walk(MapNode(*m_map));
 }
 
-ViewCell FullCells::at(const Eigen::Array3i& key) const { return leafAt(key, MapNode(m_map)); }
-
-void CompressedCells::forEachShown(const KeyBox& box, int maxDepth, const CellLook& look,
-                                   const Visit& visit) const {
-  Walk<CompressedNode>(box, maxDepth, look, visit).walk(CompressedNode(m_map, m_compression));
-}
-
-ViewCell CompressedCells::at(const Eigen::Array3i& key) const {
-  return leafAt(key, CompressedNode(m_map, m_compression));
+ViewCell CellSource::at(const Eigen::Array3i& key) const {
+  return m_compression ? leafAt(key, CompressedNode(*m_map, *m_compression))
+                       : leafAt(key, MapNode(*m_map));
 }
 
 CellAnswer answerOf(const ViewCell& cell, const SemanticOcTree& map) {
