@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Each, Program, testing::ValuesIn(kPrograms), [](const a
 TEST_P(Program, failsWhereTheStandardOutputTakesNothing) {
   EXPECT_EQ(run("--version").status, 0);
   for (const char* argument : {"--help", "--version"})
-    for (const char* output : {">/dev/full", ">&-"})
+    for (const char* output : {">/dev/full; exit $?", ">&-; exit $?"})
       EXPECT_EQ(run(argument + std::string(" ") + output).status, 1) << argument << output;
 }
 
