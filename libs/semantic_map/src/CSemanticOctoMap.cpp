@@ -103,6 +103,13 @@ std::string CSemanticOctoMap::asString() const {
   return text.str();
 }
 
+ScanConverter& CSemanticOctoMap::converter() {
+  const auto& options = insertionOptions.conversion;
+  if (!m_converter || !m_converter->isFor(m_tree.classes(), options))
+    m_converter = std::make_unique<CachedConverter>(m_tree.classes(), options);
+  return m_converter->converter;
+}
+
 bool CSemanticOctoMap::internal_insertObservation(const mrpt::obs::CObservation& observation,
                                                   const std::optional<const CPose3D>& T_map_robot) {
   const std::string refusalBefore = m_lastInsertion.refusal;
@@ -124,8 +131,7 @@ bool CSemanticOctoMap::internal_insertObservation(const mrpt::obs::CObservation&
 
 void CSemanticOctoMap::insertAccepted(const mrpt::obs::CObservation& observation,
                                       const CPose3D& T_map_robot) {
-  const LabeledScan scan =
-      *ScanConverter(m_tree.classes(), insertionOptions.conversion).convert(observation);
+  const LabeledScan scan = *converter().convert(observation);
   m_lastInsertion.conversion = scan.counts;
   m_lastInsertion.map = insertScan(scan, T_map_robot);
 }

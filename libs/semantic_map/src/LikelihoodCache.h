@@ -21,11 +21,34 @@ inline Eigen::Isometry3d sensorPose(const mrpt::poses::CPose3D& T_map_robot,
   return finite(T_map_robot, "robot") * finite(T_robot_sensor, "sensor");
 }
 
+/** A converter and what it was made for: it keeps the rays of the camera met last. */
+struct CachedConverter {
+  CachedConverter(const semantic_types::ClassTable& table_,
+                  const labeled_cloud::ScanConverterOptions& options_)
+      : table(table_), options(options_), converter(table_, options_) {}
+
+  bool isFor(const semantic_types::ClassTable& t,
+             const labeled_cloud::ScanConverterOptions& o) const {
+    const auto &labels = o.labels, &known = options.labels;
+    return o.decimation == options.decimation &&
+           o.flyingPixelThreshold == options.flyingPixelThreshold &&
+           o.emptyCarves == options.emptyCarves &&
+           o.occlusionParallax == options.occlusionParallax && labels.kind == known.kind &&
+           labels.minConfidence == known.minConfidence && labels.confusion == known.confusion &&
+           t == table;
+  }
+
+  semantic_types::ClassTable table;
+  labeled_cloud::ScanConverterOptions options;
+  labeled_cloud::ScanConverter converter;
+};
+
 /** The scan of the observation whose likelihood was asked for last. Particle filters ask at many
  * poses, some from several threads. */
 struct LikelihoodCache {
   std::mutex mutex;
-  std::string source;  ///< observation and options, as archives have them; empty: no scan
+  std::unique_ptr<CachedConverter> converter;
+  std::string source;  ///< the observation as archives have it; empty: no scan
   std::shared_ptr<const labeled_cloud::LabeledScan> scan;
   std::string refusal;  ///< that was said last
 };

@@ -125,17 +125,15 @@ class BeamLikelihood {
   double m_step, m_margin, m_minRange, m_maxRange;
 };
 
-}  // namespace
-
-/** What a scan is made of: two with the same have the same points. Reading each byte once takes a
- * small part of the time that it takes to make points of them. */
-std::string CSemanticOctoMap::sourceOf(const mrpt::obs::CObservation& observation) const {
+/** Two observations with the same have the same points. Reading each byte once takes a small part
+ * of the time that it takes to make points of them. */
+std::string bytesOf(const mrpt::obs::CObservation& observation) {
   mrpt::io::CMemoryStream bytes;
-  auto archive = mrpt::serialization::archiveFrom(bytes);
-  archive << observation;
-  insertionOptions.writeTo(archive);
+  mrpt::serialization::archiveFrom(bytes) << observation;
   return {static_cast<const char*>(bytes.getRawBufferData()), bytes.getTotalBytesCount()};
 }
+
+}  // namespace
 
 /** Null if it cannot be used. The reason goes to the logger as a warning, unless it is the same as
  * the last. */
@@ -145,11 +143,15 @@ std::shared_ptr<const LabeledScan> CSemanticOctoMap::scanForLikelihood(
   LikelihoodCache& cache = *m_likelihoodCache;
   const std::lock_guard lock(cache.mutex);
   const std::string refusalBefore = std::exchange(cache.refusal, {});
+  const auto& options = insertionOptions.conversion;
+  if (!cache.converter || !cache.converter->isFor(m_tree.classes(), options)) {
+    cache.converter = std::make_unique<CachedConverter>(m_tree.classes(), options);
+    cache.source.clear();
+  }
   try {
-    std::string source = sourceOf(observation);
+    std::string source = bytesOf(observation);
     if (source == cache.source) return cache.scan;
-    auto scan = labeled_cloud::ScanConverter(m_tree.classes(), insertionOptions.conversion)
-                    .convert(observation);
+    auto scan = cache.converter->converter.convert(observation);
     if (scan->cloud.empty()) throw std::invalid_argument("no point with a usable range");
     cache.scan = std::make_shared<LabeledScan>(std::move(*scan));
     cache.source = std::move(source);

@@ -38,6 +38,7 @@ class ObservationClock {
   std::optional<mrpt::Clock::time_point> m_latest;
 };
 
+struct CachedConverter;
 struct LikelihoodCache;
 
 /** What came of an observation. */
@@ -229,7 +230,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   /** The centers of voxels, for questions in the plane: a points map of MRPT's that was asked one
    * in space answers none of these, and the other way round. */
   const mrpt::maps::CSimplePointsMap& centersFromAbove() const;
-  std::string sourceOf(const mrpt::obs::CObservation& observation) const;
+  labeled_cloud::ScanConverter& converter();
   std::shared_ptr<const labeled_cloud::LabeledScan> scanForLikelihood(
       const mrpt::obs::CObservation& observation) const;
   void insertAccepted(const mrpt::obs::CObservation& observation,
@@ -243,6 +244,7 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   InsertionResult m_lastInsertion;
   ObservationClock m_observationClock;
   mutable mrpt::system::COutputLogger m_logger{"CSemanticOctoMap"};
+  std::unique_ptr<CachedConverter> m_converter;
   std::unique_ptr<LikelihoodCache> m_likelihoodCache;
   mutable std::mutex m_centersMutex;
   mutable std::optional<semantic_octree::MapFollower> m_changes;  ///< since the centers were made
