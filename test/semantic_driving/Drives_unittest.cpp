@@ -77,39 +77,6 @@ TEST(Drives, BeginWithoutAMapAndArriveOnTheRoad) {
   EXPECT_LT(badLength(record.drivenPerClass, syntheticOrder()), 0.5);
 }
 
-TEST(Drives, GoOnWhileScansAreInsertedAndAreTheSameEachTime) {
-  /** The path that it follows changes when the map has what was seen, not before. */
-  struct Changes : DriveObserver {
-    void onDriven(const DriveLoop& loop) override {
-      const double length = loop.controller().tracker().path().length();
-      if (std::exchange(m_length, length) == length) return;
-      const double since = std::fmod(loop.time() + 1e-6, loop.config().sensors.period);
-      EXPECT_NEAR(since, loop.config().mappingLatency, 1e-3) << loop.time();
-      ++number;
-    }
-    int number = 0;
-
-   private:
-    double m_length = 0;
-  };
-  DriveConfig config = smallConfig();
-  config.mappingLatency = 0.3;
-  World world = plain();
-  std::string drives[2];
-  for (std::string& csv : drives) {
-    DriveLoop loop(config, world, syntheticOrder(), {-8, 0, 0}, {8, 2, 0}, {});
-    Changes changes;
-    loop.addObserver(changes);
-    const DriveRecord& record = loop.run();
-    EXPECT_GT(changes.number, 1);
-    EXPECT_EQ(record.end, DriveEnd::Arrived) << record.reason;
-    EXPECT_EQ(record.collisions, 0);
-    csv = toCsv(record);
-  }
-  EXPECT_EQ(drives[0], drives[1]);
-  EXPECT_NE(drives[0], toCsv(drive(world, {-8, 0, 0}, {8, 2, 0}))) << "not at once";
-}
-
 TEST(Drives, StopBeforeWhatAppearsThoughTheMapHasItLater) {
   DriveConfig config = smallConfig();
   config.mappingLatency = 0.3;

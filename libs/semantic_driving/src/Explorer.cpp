@@ -107,14 +107,14 @@ class FrontierSearch {
  public:
   FrontierSearch(const SemanticPlanner& planner, const GroundFlood& flood, const GoalRegion& region,
                  const TPose2D& from, const TPose2D& goal)
-      : m_planner(planner),
-        m_ground(planner.ground()),
-        m_flood(flood),
-        m_region(region),
-        m_from(from),
-        m_goal(goal) {
+      : m_planner(planner), m_ground(planner.ground()), m_flood(flood), m_region(region) {
     flood.forEach([&](Column c, const GroundFlood::Place& place) {
-      if ((c.x + c.y) % 2 == 0) lookAround(c, place.z);
+      if ((c.x + c.y) % 2 != 0) return;
+      const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
+      const double onward = onwardFrom(c, place.z);
+      if (std::isfinite(onward))
+        m_places.push_back(
+            {c, onward, std::hypot(x - from.x, y - from.y) + std::hypot(x - goal.x, y - goal.y)});
     });
   }
 
@@ -122,7 +122,7 @@ class FrontierSearch {
    * \param unknown what a meter through it counts */
   std::vector<Frontier> chosen(double unknown, const std::vector<TPose2D>& avoid) const {
     std::vector<Frontier> chosen;
-    for (const auto& [cost, straight, c] : best(unknown)) {
+    for (const auto& [c, onward, straight, cost] : best(unknown)) {
       const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
       const auto isNear = [&](const TPose2D& p) {
         return std::hypot(p.x - x, p.y - y) < kFrontiersApart;
@@ -139,42 +139,25 @@ class FrontierSearch {
   }
 
  private:
-  /** Unknown ground that is seen from a place. */
-  struct View {
-    Column from, unknown;
-    double distance;  ///< meters
-  };
-
   struct Place {
-    double cost;
-    double straight;  ///< meters from the vehicle by way of it to the goal, whatever is in the way
     Column column;
+    double onward;    ///< least meters through the unknown that is seen from there to the goal
+    double straight;  ///< meters from the vehicle by way of it to the goal, whatever is in the way
+    double cost = 0;
   };
 
   /** The least cost first. Ways over columns are as long anywhere between two diagonals: of such
    * places that which leads straight on comes first. */
   std::vector<Place> best(double unknown) const {
     constexpr double kSameCost = 1e-3;  // m
-    std::vector<Place> places;
-    for (const View& view : m_views) {
-      const double cost =
-          m_flood.at(view.from).cost + unknown * (view.distance + m_region.way(view.unknown));
-      if (!std::isfinite(cost)) continue;
-      if (places.empty() || !(places.back().column == view.from))
-        places.push_back({cost, straightOver(view.from), view.from});
-      places.back().cost = std::min(places.back().cost, cost);
-    }
+    std::vector<Place> places = m_places;
+    for (Place& p : places) p.cost = m_flood.at(p.column).cost + unknown * p.onward;
     std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
       const double costOfA = std::round(a.cost / kSameCost),
                    costOfB = std::round(b.cost / kSameCost);
       return costOfA != costOfB ? costOfA < costOfB : a.straight < b.straight;
     });
     return places;
-  }
-
-  double straightOver(Column c) const {
-    const double x = m_ground.centerOf(c.x), y = m_ground.centerOf(c.y);
-    return std::hypot(x - m_from.x, y - m_from.y) + std::hypot(x - m_goal.x, y - m_goal.y);
   }
 
   bool isUnknown(Column c, int z) const {
@@ -184,23 +167,23 @@ class FrontierSearch {
     return true;
   }
 
-  /** For the unknown of the goal's region, in each of eight directions. */
-  void lookAround(Column c, int z) {
+  /** For the unknown of the goal's region, in each of eight directions; infinite: none is seen. */
+  double onwardFrom(Column c, int z) const {
     Slices::count(1);
     const int far = static_cast<int>(std::lround(kSight / m_ground.voxelSize()));
+    double least = std::numeric_limits<double>::infinity();
     for (const Column& d : kNeighbors)
       for (int i = 1; i <= far; ++i) {
-        const Column there{c.x + i * d.x, c.y + i * d.y};
+        const Column there{c.x + i * d.x, c.y + i * d.y}, before{there.x - d.x, there.y - d.y};
         const double step = m_ground.voxelSize() * lengthOf(d);
-        if (!m_flood.columns().contains(there)) {
-          m_views.push_back({c, {there.x - d.x, there.y - d.y}, (i - 1) * step});
-          break;
-        }
-        if (m_region.isObstacle(there)) break;
-        if (i == 1 || !m_region.contains(there) || !isUnknown(there, z)) continue;
-        m_views.push_back({c, there, i * step});
+        const bool isOutside = !m_flood.columns().contains(there);
+        if (!isOutside && m_region.isObstacle(there)) break;
+        if (!isOutside && (i == 1 || !m_region.contains(there) || !isUnknown(there, z))) continue;
+        least = std::min(least, isOutside ? (i - 1) * step + m_region.way(before)
+                                          : i * step + m_region.way(there));
         break;
       }
+    return least;
   }
 
   double headingAt(Column c) const {
@@ -215,8 +198,7 @@ class FrontierSearch {
   const Ground& m_ground;
   const GroundFlood& m_flood;
   const GoalRegion& m_region;
-  const TPose2D m_from, m_goal;
-  std::vector<View> m_views;
+  std::vector<Place> m_places;
 };
 
 }  // namespace
