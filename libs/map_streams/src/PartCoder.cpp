@@ -112,16 +112,7 @@ void check(const StreamLeaf& leaf, int numClasses) {
 }  // namespace
 
 PartCoder::PartCoder(int numClasses, int rootDepth)
-    : m_numClasses(numClasses), m_rootDepth(rootDepth) {
-  setDictionary({});
-}
-
-void PartCoder::setDictionary(std::string bytes) {
-  m_dictionary = std::move(bytes);
-  m_packing = {ZSTD_createCDict(m_dictionary.data(), m_dictionary.size(), kLevel), ZSTD_freeCDict};
-  m_unpacking = {ZSTD_createDDict(m_dictionary.data(), m_dictionary.size()), ZSTD_freeDDict};
-  if (!m_packing || !m_unpacking) throw std::runtime_error("altered: no dictionary");
-}
+    : m_numClasses(numClasses), m_rootDepth(rootDepth) {}
 
 void PartCoder::learn(const std::function<void(const VisitGroup&)>& forEachGroup) {
   std::map<std::string, std::size_t> counts;
@@ -149,11 +140,12 @@ void PartCoder::learn(const std::function<void(const VisitGroup&)>& forEachGroup
     samples += bytes;
     sizes.push_back(bytes.size());
   });
-  std::string dictionary(kMostDictionary, '\0');
-  const std::size_t size = ZDICT_trainFromBuffer(&dictionary[0], dictionary.size(), samples.data(),
-                                                 sizes.data(), static_cast<unsigned>(sizes.size()));
-  dictionary.resize(ZDICT_isError(size) ? 0 : size);
-  setDictionary(std::move(dictionary));
+  m_dictionary.assign(kMostDictionary, '\0');
+  const std::size_t size =
+      ZDICT_trainFromBuffer(&m_dictionary[0], m_dictionary.size(), samples.data(), sizes.data(),
+                            static_cast<unsigned>(sizes.size()));
+  m_dictionary.resize(ZDICT_isError(size) ? 0 : size);
+  m_packing = {ZSTD_createCDict(m_dictionary.data(), m_dictionary.size(), kLevel), ZSTD_freeCDict};
 }
 
 std::string PartCoder::plain(const std::vector<const TreePart*>& parts) const {
@@ -216,7 +208,8 @@ void PartCoder::fromText(const std::string& text) {
     check(leaf, m_numClasses);
     bytes = bytesOf(leaf);
   }
-  setDictionary(reader.rest());
+  m_dictionary = reader.rest();
+  m_unpacking = {ZSTD_createDDict(m_dictionary.data(), m_dictionary.size()), ZSTD_freeDDict};
 }
 
 }  // namespace semantic_octree
