@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kLevel = 9;
 constexpr std::size_t kMostFrequent = 255, kWrittenOut = 255;
-constexpr std::size_t kMostDictionary = 1 << 12, kMostSamples = 1 << 18, kMostPlain = 1 << 22;
+constexpr std::size_t kMostDictionary = 1 << 12, kMostSamples = 256, kMostPlain = 1 << 22;
 
 [[noreturn]] void fail() { throw std::runtime_error("altered: a part of a tree that cannot be"); }
 
@@ -38,8 +38,8 @@ std::string packed(const std::string& bytes, const ZSTD_CDict_s* dictionary) {
 }
 
 std::string unpacked(const std::string& packed, std::size_t most, const ZSTD_DDict_s* dictionary) {
-  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
-                                                                     ZSTD_freeDCtx);
+  thread_local const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
+                                                                                  ZSTD_freeDCtx);
   const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size > most) fail();
   std::string bytes(size, '\0');
@@ -112,22 +112,7 @@ void check(const StreamLeaf& leaf, int numClasses) {
 }  // namespace
 
 PartCoder::PartCoder(int numClasses, int rootDepth)
-    : m_numClasses(numClasses), m_rootDepth(rootDepth) {
-  setDictionary({});
-}
-
-void PartCoder::setFrequent(std::vector<std::string> leaves) {
-  m_frequent = std::move(leaves);
-  m_numbers.clear();
-  for (const std::string& leaf : m_frequent) m_numbers.emplace(leaf, m_numbers.size());
-}
-
-void PartCoder::setDictionary(std::string bytes) {
-  m_dictionary = std::move(bytes);
-  m_packing = {ZSTD_createCDict(m_dictionary.data(), m_dictionary.size(), kLevel), ZSTD_freeCDict};
-  m_unpacking = {ZSTD_createDDict(m_dictionary.data(), m_dictionary.size()), ZSTD_freeDDict};
-  if (!m_packing || !m_unpacking) throw std::runtime_error("altered: no dictionary");
-}
+    : m_numClasses(numClasses), m_rootDepth(rootDepth) {}
 
 void PartCoder::learn(const std::function<void(const VisitGroup&)>& forEachGroup) {
   std::map<std::string, std::size_t> counts;
@@ -143,22 +128,24 @@ void PartCoder::learn(const std::function<void(const VisitGroup&)>& forEachGroup
       sorted.emplace_back(count, leaf);  // its entry saves more than it costs
   std::sort(sorted.rbegin(), sorted.rend());
   if (sorted.size() > kMostFrequent) sorted.resize(kMostFrequent);
-  std::vector<std::string> frequent;
-  for (const auto& each : sorted) frequent.push_back(each.second);
-  setFrequent(std::move(frequent));
+  m_frequent.clear();
+  for (const auto& each : sorted) m_frequent.push_back(each.second);
+  std::sort(m_frequent.begin(), m_frequent.end());
+  const std::size_t every = 1 + groups / kMostSamples;
   std::string samples;
   std::vector<std::size_t> sizes;
   forEachGroup([&](const auto& group) {
+    if (groups++ % every != 0) return;
     const std::string bytes = plain(group);
-    if (samples.size() + bytes.size() > kMostSamples) return;
     samples += bytes;
     sizes.push_back(bytes.size());
   });
-  std::string dictionary(kMostDictionary, '\0');
-  const std::size_t size = ZDICT_trainFromBuffer(&dictionary[0], dictionary.size(), samples.data(),
-                                                 sizes.data(), static_cast<unsigned>(sizes.size()));
-  dictionary.resize(ZDICT_isError(size) ? 0 : size);
-  setDictionary(std::move(dictionary));
+  m_dictionary.assign(kMostDictionary, '\0');
+  const std::size_t size =
+      ZDICT_trainFromBuffer(&m_dictionary[0], m_dictionary.size(), samples.data(), sizes.data(),
+                            static_cast<unsigned>(sizes.size()));
+  m_dictionary.resize(ZDICT_isError(size) ? 0 : size);
+  m_packing = {ZSTD_createCDict(m_dictionary.data(), m_dictionary.size(), kLevel), ZSTD_freeCDict};
 }
 
 std::string PartCoder::plain(const std::vector<const TreePart*>& parts) const {
@@ -169,9 +156,10 @@ std::string PartCoder::plain(const std::vector<const TreePart*>& parts) const {
     written.write(*part, places);
     forEachLeaf(*part, [&](const StreamLeaf& leaf) {
       const std::string bytes = bytesOf(leaf);
-      const auto found = m_numbers.find(bytes);
-      const bool isFrequent = found != m_numbers.end();
-      leaves.value(static_cast<std::uint8_t>(isFrequent ? found->second : kWrittenOut));
+      const auto found = std::lower_bound(m_frequent.begin(), m_frequent.end(), bytes);
+      const bool isFrequent = found != m_frequent.end() && *found == bytes;
+      leaves.value(
+          static_cast<std::uint8_t>(isFrequent ? found - m_frequent.begin() : int(kWrittenOut)));
       if (!isFrequent) others.bytes += bytes;
     });
   }
@@ -213,15 +201,15 @@ std::string PartCoder::toText() const {
 
 void PartCoder::fromText(const std::string& text) {
   ByteReader reader(text);
-  std::vector<std::string> frequent(reader.take<std::uint8_t>());
-  for (std::string& bytes : frequent) {
+  m_frequent.resize(reader.take<std::uint8_t>());
+  for (std::string& bytes : m_frequent) {
     StreamLeaf leaf;
     get(reader, leaf);
     check(leaf, m_numClasses);
     bytes = bytesOf(leaf);
   }
-  setFrequent(std::move(frequent));
-  setDictionary(reader.rest());
+  m_dictionary = reader.rest();
+  m_unpacking = {ZSTD_createDDict(m_dictionary.data(), m_dictionary.size()), ZSTD_freeDDict};
 }
 
 }  // namespace semantic_octree

@@ -2,7 +2,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "StreamTree.h"
@@ -43,15 +42,12 @@ class PartCoder {
 
  private:
   std::string plain(const std::vector<const TreePart*>& parts) const;
-  void setFrequent(std::vector<std::string> leaves);
-  void setDictionary(std::string bytes);
 
   int m_numClasses, m_rootDepth;
-  std::vector<std::string> m_frequent;  ///< leaves as bytes
-  std::unordered_map<std::string, std::size_t> m_numbers;
+  std::vector<std::string> m_frequent;  ///< leaves as bytes, sorted
   std::string m_dictionary;
-  std::shared_ptr<const ZSTD_CDict_s> m_packing;
-  std::shared_ptr<const ZSTD_DDict_s> m_unpacking;
+  std::shared_ptr<const ZSTD_CDict_s> m_packing;    ///< a sender's
+  std::shared_ptr<const ZSTD_DDict_s> m_unpacking;  ///< a receiver's
 };
 
 }  // namespace semantic_octree
