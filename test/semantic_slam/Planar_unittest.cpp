@@ -356,6 +356,18 @@ TEST(Planar, aRobotThatIsTurnedWhereItStandsIsNotLost) {
   EXPECT_LT(errorsOf(slam.poses(), r).rootMeanSquare, 0.06);
 }
 
+TEST(Planar, aRobotThatWasCarriedIsFoundWhileItDrives) {
+  const Recording whole = recordingOf("village", 1, laserOf(), 120, kFlat);
+  Recording r = whole;
+  append(r, whole, 20, 60);  // from 120 m back to 20 m
+  Slam slam({});
+  addAll(slam, r, kRobotLaser);
+  EXPECT_LT(errorsOf(slam.poses(), r).largest, 0.3);
+  EXPECT_EQ(slam.report().torn, 1u);
+  EXPECT_EQ(slam.report().joined, 1u);
+  EXPECT_FALSE(slam.outnumbered(1).empty());  // pieces forget nothing
+}
+
 TEST(Planar, aRobotThatWasCarriedTwiceIsFoundInTheEnd) {
   const Recording whole = recordingOf("village", 1, laserOf(), 120, kFlat);
   Recording r = recordingOf("village", 1, laserOf(), 40, kFlat);
@@ -400,6 +412,23 @@ TEST(Planar, logsOfTwoPlacesAreSaidToBeApart) {
                                "odometry leads across"),
             std::string::npos)
       << warningsOf(r);
+}
+
+TEST(Planar, whereTheRobotWasCarriedToIsNotWhereItWasCarriedFrom) {
+  Recording r = recordingOf("village", 1, laserOf(), 120, kFlat);
+  Recording park = recordingOf("park", 4, laserOf(), kDriven, kFlat);
+  for (std::size_t i = park.truth.size() - 1; i-- > 0;) {  // and back again
+    park.clouds.push_back(park.clouds[i]);
+    park.truth.push_back(park.truth[i]);
+    park.odometry.push_back(park.odometry[i]);
+  }
+  append(r, park, 30, park.truth.size());  // in the end beyond where it began
+  Slam slam({});
+  addAll(slam, r, kRobotLaser);
+  EXPECT_EQ(slam.report().torn, 1u);
+  slam.finish();
+  EXPECT_EQ(slam.report().torn, 1u);
+  EXPECT_EQ(slam.report().joined, 0u);
 }
 
 TEST(Planar, aScannerThatIsBlindForAMomentTearsNothing) {

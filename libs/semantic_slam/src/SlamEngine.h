@@ -140,6 +140,8 @@ class SlamEngine {
   using Part = std::vector<std::size_t>;
   /** All keyframes are in one; the largest first. */
   std::vector<Part> parts() const;
+  /** While the robot drives: searches the piece that it is in. \return whether poses moved */
+  bool joinPiece();
   /** At the end: searches all that is not in the largest part. \return whether poses moved */
   bool joinParts();
   /** Whether its frame is that of the map: looks at a reference connect it, or, where there are
@@ -161,7 +163,8 @@ class SlamEngine {
   /** Each has three quarters of its keyframes in common with the next one. */
   static std::vector<Stretch> stretchesOf(const Part& part);
   /** Where what a stretch saw fits best. */
-  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes) const;
+  std::optional<PoseEdge> findStretch(const Places& places, const Stretch& keyframes,
+                                      std::size_t& looks) const;
 
   // --- Loops and the reference ---
   bool closeLoops();
@@ -171,7 +174,8 @@ class SlamEngine {
                                     const std::function<double(std::size_t)>& farthest) const;
   /** Where a stretch fits best. */
   struct Look {
-    Pose T_map;  ///< of the keyframe whose frame the stretch is in
+    Pose T_map;         ///< of the keyframe whose frame the stretch is in
+    double off, score;  ///< m from where the poses have it; share of the highest
     bool isAlone;
     std::size_t first, last;  ///< keyframes that it was compared with
   };
@@ -201,6 +205,9 @@ class SlamEngine {
   std::size_t keyframesBeside() const {
     return static_cast<std::size_t>(m_scale.submapKeyframes / 2);
   }
+  /** Share of the highest score of every other keyframe of the newest stretch in those between: as
+   * well it fits where it was before. */
+  double ownScore() const;
   /** Where the robot may be off after a way (m). */
   PlaneSearch::Window windowAfter(double way) const;
   /** Information of what was found, by its points and by what is known of such finds at most. */
@@ -257,7 +264,9 @@ class SlamEngine {
   bool m_isOptimized = true;
   std::optional<std::size_t> m_doubted;  ///< first keyframe after a loss
   std::vector<std::size_t> m_tears;      ///< first keyframes of all pieces but the first, in order
-  Reference m_reference;                 ///< none: there is no map
+  double m_nextJoin = 0;                 ///< m of the last one's way, when it is searched
+  std::optional<PoseEdge> m_pendingPiece;       ///< where it was found last
+  Reference m_reference;                        ///< none: there is no map
   Matrix6 m_mostOfReference = Matrix6::Zero();  ///< information, at most
 };
 

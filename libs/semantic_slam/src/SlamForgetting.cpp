@@ -88,6 +88,7 @@ void SlamEngine::forget(const std::vector<std::size_t>& keyframes) {
   m_looked = m_keyframes.size();
   m_pendingLoops.clear();
   m_pendingReferences.clear();
+  m_pendingPiece.reset();
   m_tears.clear();  // all pieces are joined
 }
 

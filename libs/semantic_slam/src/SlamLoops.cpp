@@ -26,8 +26,10 @@ constexpr std::size_t kMostPlaces = 3;
 /** Cells of the grid: least window of a search at the end, and how far off a find has to be for a
  * warning. */
 constexpr double kLeftWindow = 20, kApart = 3;
-/** Least share of the highest score. */
-constexpr double kLeastScore = 0.5;
+/** Least share of the highest score where poses are right already, by the first window. Where they
+ * would move it is one of the stretch's own score, for people and noise fit nowhere. What goes on
+ * into a corridor that nobody saw fits wrong places up to .75 of that. */
+constexpr double kLeastScore = 0.5, kMovingScore = 0.8;
 /** Two loops agree up to so much, more for each meter between; farther apart they are not compared.
  */
 constexpr double kAgree = 0.2, kAgreeWay = 0.03, kAgreeAngle = 2 * kDegree,
@@ -130,6 +132,17 @@ bool SlamEngine::closeLoops() {
   return moved;
 }
 
+double SlamEngine::ownScore() const {
+  const std::size_t newest = m_keyframes.size() - 1;
+  PlanePoints some, others;
+  for (std::size_t k = newest - std::min(newest, keyframesBeside()); k <= newest; ++k)
+    for (const Eigen::Vector2d& p : upright(moved(seenAt(k).cloud, m_poses[k])))
+      (k % 2 == newest % 2 ? some : others).push_back(p);
+  const PlaneSearch::Window here{0, 0};
+  const auto own = PlaneSearch(others, m_scale.gridCell).find(some, {0, 0, 0}, here, 0);
+  return own ? own->score : 1;
+}
+
 PlaneSearch::Window SlamEngine::windowAfter(double way) const {
   return {kWindow * m_scale.gridCell + kWindowDrift * way,
           std::min(kAngle + kAngleDrift * way, kLargestAngle)};
@@ -149,9 +162,11 @@ auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen&
   // Wherever the robot is in the window, all that it sees was seen from these keyframes.
   const auto reach = static_cast<std::size_t>(m_scale.submapKeyframes / 2 +
                                               window.radius / m_scale.keyframeDistance);
+  const bool isBefore = !m_tears.empty() && place < m_tears.back();
+  const std::size_t end = isBefore ? std::min(m_tears.back(), keyframe) : keyframe;
   const std::size_t first = place - std::min(place, reach);
   std::size_t last = place;
-  while (last < place + reach && last + 1 < keyframe &&
+  while (last < place + reach && last + 1 < end &&
          wayNow - m_keyframes[last + 1].way > m_scale.loopLength / 2)
     ++last;
   const auto found = PlaneSearch(upright(pointsOf(first, last, place).cloud), m_scale.gridCell)
@@ -159,7 +174,12 @@ auto SlamEngine::lookAround(std::size_t place, std::size_t keyframe, const Seen&
   if (!found) return std::nullopt;
   Pose T_found = poseOfFlat(found->pose, T_guess(2, 3));
   T_found.rotate(T_turn.linear().transpose() * T_guess.linear());
-  return Look{m_poses[place] * T_found, found->isAlone, first, last};
+  return Look{m_poses[place] * T_found,
+              (found->pose - guess).head<2>().norm(),
+              found->score,
+              found->isAlone,
+              first,
+              last};
 }
 
 std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretch, double way,
@@ -176,6 +196,8 @@ std::optional<PoseEdge> SlamEngine::edgeTo(std::size_t place, const Seen& stretc
     found = lookAround(place, newest, stretch, whole, looks);
   }
   if (!found) return std::nullopt;
+  if (found->off > kWindow * m_scale.gridCell && found->score < kMovingScore * ownScore())
+    return std::nullopt;
   if (!found->isAlone) {
     m_report.open += way > m_scale.loopLength;  // no loop leads there yet
     return std::nullopt;

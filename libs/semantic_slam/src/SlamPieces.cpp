@@ -14,6 +14,9 @@ constexpr double kHolds = 0.55, kHoldsMeters = 0.3;
 /** Share of the highest score of a place that is searched everywhere. Right places have .5 to .9;
  * wrong ones, up to .7, have others beside them that fit as well. */
 constexpr double kFoundScore = 0.5;
+/** While the robot drives, its piece is searched when it is so long, m, and each time that it grew
+ * by the factor. */
+constexpr double kFirstLook = 4, kNextLook = 1.4;
 /** Keyframes that are searched at most; points of them; edge of the search's cells, of a loop's. */
 constexpr std::size_t kSearched = 40, kMostPoints = 400;
 constexpr double kCells = 2;
@@ -46,6 +49,8 @@ bool SlamEngine::holdsAcross(std::size_t first) const {
 
 void SlamEngine::tearAt(std::size_t first) {
   m_tears.push_back(first);
+  m_nextJoin = kFirstLook;
+  m_pendingPiece.reset();
   m_pendingLoops.clear();
   const auto leadsAcross = [first](const PoseEdge& e) {
     return e.isDoubtful && e.a != PoseEdge::kMap && e.a < first && e.b >= first;
@@ -103,6 +108,25 @@ auto SlamEngine::parts() const -> std::vector<Part> {
   return parts;
 }
 
+bool SlamEngine::joinPiece() {
+  if (m_tears.empty()) return false;
+  const std::size_t newest = m_keyframes.size() - 1, first = m_tears.back();
+  const double way = m_keyframes[newest].way - m_keyframes[first].way;
+  if (way < m_nextJoin) return false;
+  m_nextJoin = kNextLook * way;
+  const auto all = parts();
+  const auto own = std::find_if(all.begin(), all.end(),
+                                [newest](const Part& part) { return part.back() == newest; });
+  if (own->front() < first) return false;  // it is joined
+  const Stretch last{newest - std::min(newest - first, kSearched), newest};
+  const auto found = findStretch(placesOf(all[own == all.begin()]), last, m_looks);
+  if (!found) return false;
+  std::vector<PoseEdge> finds{*found};
+  if (m_pendingPiece && agree(*m_pendingPiece, *found)) finds.push_back(*m_pendingPiece);
+  m_pendingPiece = found;
+  return join(*own, finds);
+}
+
 bool SlamEngine::joinParts() {
   bool moved = false;
   auto all = parts();
@@ -158,8 +182,10 @@ std::vector<PoseEdge> SlamEngine::findPart(const Part& others, const Part& part)
   const Places places = placesOf(others);
   const std::vector<Stretch> stretches = stretchesOf(part);
   std::vector<PoseEdge> finds, most;
-  for (const Stretch& stretch : stretches)
-    if (const auto found = findStretch(places, stretch)) finds.push_back(*found);
+  for (const Stretch& stretch : stretches) {
+    std::size_t looks = PlaneSearch::kMostLooks;
+    if (const auto found = findStretch(places, stretch, looks)) finds.push_back(*found);
+  }
   for (const PoseEdge& find : finds) {
     std::vector<PoseEdge> alike{find};
     for (const PoseEdge& other : finds)
@@ -186,8 +212,8 @@ auto SlamEngine::placesOf(const Part& part) const -> Places {
           {box.sizes().maxCoeff() / 2, M_PI}};
 }
 
-std::optional<PoseEdge> SlamEngine::findStretch(const Places& places,
-                                                const Stretch& keyframes) const {
+std::optional<PoseEdge> SlamEngine::findStretch(const Places& places, const Stretch& keyframes,
+                                                std::size_t& looks) const {
   const std::size_t last = keyframes.second;
   const Seen stretch = pointsOf(keyframes.first, last, last);
   const PlanePoints searched =
@@ -195,7 +221,7 @@ std::optional<PoseEdge> SlamEngine::findStretch(const Places& places,
   PlanePoints some;
   const std::size_t every = 1 + searched.size() / kMostPoints;
   for (std::size_t i = 0; i < searched.size(); i += every) some.push_back(searched[i]);
-  const auto found = places.search.find(some, places.middle, places.window, kFoundScore);
+  const auto found = places.search.find(some, places.middle, places.window, kFoundScore, looks);
   if (!found || !found->isAlone) return std::nullopt;
   const Pose T_map = poseOfFlat(found->pose);
   const Part& part = places.keyframes;

@@ -131,8 +131,8 @@ Slam::Added SlamEngine::addAsOf(double middle, const SensorScan& scan,
   begin(now, rigid(m_poses.back() * T_last_robot), T_last_robot);
   m_looks = kLiveLooks;
   settleDoubt(keyframesBeside());
-  const bool followed = followReference();
-  return {last + 1, Pose::Identity(), true, closeLoops() || followed, m_velocity};
+  const bool joined = joinPiece(), followed = followReference();
+  return {last + 1, Pose::Identity(), true, closeLoops() || followed || joined, m_velocity};
 }
 
 auto SlamEngine::seenIn(const SensorScan& scan, double middle, const Vector6& velocity,
