@@ -123,8 +123,12 @@ bool isWanted(const Cli& cli, const Eigen::AlignedBox3d& cube) {
 
 int run(Cli& cli) {
   cli.outputs.checkFolder(cli.output, kFiles);
-  const auto stored = inputs::openMap(
-      cli.map, cli.memory, [&](const Eigen::AlignedBox3d& cube) { return isWanted(cli, cube); });
+  bool isAllRead = true;
+  const auto stored = inputs::openMap(cli.map, cli.memory, [&](const Eigen::AlignedBox3d& cube) {
+    const bool isRead = isWanted(cli, cube);
+    isAllRead = isAllRead && isRead;
+    return isRead;
+  });
   SemanticOcTree& map = stored->tree();
   const auto order = loadClassOrder(cli.order, map.classes());
   if (!cli.vehicle.empty()) cli.planner.vehicle = loadVehicle(cli.vehicle);
@@ -149,8 +153,9 @@ int run(Cli& cli) {
   progress.reset();
   std::optional<Progress> planning(std::in_place, "Planning", 0);
   planning->update(0, "a path");
-  const PlanResult plan = planner.plan(cli.start, cli.goal, cli.startZ, cli.goalZ);
+  PlanResult plan = planner.plan(cli.start, cli.goal, cli.startZ, cli.goalZ);
   planning.reset();
+  if (!plan.found() && !isAllRead) plan.reason += "; tiles beyond the --corridor were not read";
   nlohmann::json report = toJson(plan, order, map.classes());
   report["milliseconds"]["abstraction"] = abstraction;
   report["milliseconds"]["ground"] = ground;

@@ -177,3 +177,16 @@ TEST_F(PlanOfALongRoad, keepsWithinABudgetOfATenthOfTheMap) {
   EXPECT_LT(peak, least + m_megabytes / 10 + 40e-6 * (2 * kHalf / 0.2) * (20 / 0.2));
   EXPECT_GT(whole, peak + 0.7 * m_megabytes);
 }
+
+TEST_F(PlanOfALongRoad, WithoutAPathItSaysWhatWasNotRead) {
+  const auto reason = [&](const std::string& corridor) {
+    const ProgramRun run =
+        runProgram("semantic-map-plan",
+                   {path("tiles"), "--start=0,0,0", "--goal=20,16,0", "--order", path("order.yaml"),
+                    "--output", path("out"), "-f", "--corridor", corridor});
+    EXPECT_EQ(run.status, 2);
+    return run.errors;
+  };
+  EXPECT_TRUE(contains(reason("30"), "tiles beyond the --corridor were not read"));
+  EXPECT_FALSE(contains(reason("inf"), "--corridor"));
+}

@@ -144,3 +144,16 @@ TEST(GoalRegion, ThatTheVehicleReachesIsNotEnclosed) {
   EXPECT_FALSE(region.isEnclosed());
   EXPECT_TRUE(region.contains(columnOf({-9, -9})));  // wherever: a plan may come from there
 }
+
+TEST(GoalRegion, LeadsThroughGapsThatTheVehicleGetsThrough) {
+  Walls walls;
+  for (int y = -12; y <= 12; ++y)
+    if (y != 0) walls.columns.insert({15, y});
+  std::set<Place> reached;
+  for (int x = 11; x <= 18; ++x) reached.insert({x, 0});
+  PaintedWorld world;
+  const SemanticPlanner planner = walls.planner(world);
+  const GoalRegion region = regionOf(planner, reached, {11, 0});
+  EXPECT_NEAR(region.way(columnOf({18, 0})), 7 * kRegionVoxel, 1e-9);
+  EXPECT_NEAR(region.way(columnOf({18, 2})), (5 + 2 * std::sqrt(2)) * kRegionVoxel, 1e-9);
+}

@@ -240,8 +240,11 @@ TEST(GuideTransitions, WithoutAPathItWaitsAsLongForWhatStandsAtTheGoal) {
 
 TEST(GuideTransitions, DriveToTheNearestPoseIfItWillDo) {
   const GuideOptions options;
-  Transition next = transition(doing(Target::Goal), answer({What::SeekNearest}, true));
+  const auto misfit = [](GuideState& state) { state.misfitSince = 9; };
+  Transition next =
+      transition(with(doing(Target::Goal), misfit), answer({What::SeekNearest}, true));
   EXPECT_EQ(words(next.action), "come to rest");
+  EXPECT_FALSE(next.state.misfitSince);
   next = transition(next.state, ended(21), options);
   EXPECT_EQ(words(next.action), "seek goal, replacing, or frontier");
   next = transition(doing(Target::None), answer({What::SeekNearest}, true));
@@ -250,6 +253,29 @@ TEST(GuideTransitions, DriveToTheNearestPoseIfItWillDo) {
             "seek goal, or frontier");
   next = transition(doing(Target::Goal), answer({What::SeekNearest}, false));  // there is none
   EXPECT_EQ(words(next.state), "gave up");
+  EXPECT_EQ(next.state.target, Target::None);
+}
+
+TEST(GuideTransitions, AnEnclosedVehicleGoesBackOnceAtTheBeginning) {
+  Answer none = answer({What::SeekFrontier}, false);
+  none.enclosed = true;
+  GuideState state;
+  EXPECT_EQ(words(transition(state, none).action), "seek back");
+  state = transition(state, answer({What::SeekBack}, true)).state;
+  EXPECT_EQ(words(transition(state, none).action), "stop");
+}
+
+TEST(GuideTransitions, APathThatIsFoundEndsWhatWasBefore) {
+  GuideState state = transition(GuideState(), answer({What::SeekBack}, false)).state;
+  for (int i = 0; i < GuideState::kMostTimesBack; ++i)
+    state = transition(state, answer({What::SeekBack}, true)).state;
+  state = transition(state, answer({What::SeekGoal}, true)).state;
+  Answer none = answer({What::SeekFrontier}, false);
+  none.seconds = 30;
+  EXPECT_EQ(words(transition(state, none).action), "seek back");
+  none.enclosed = true;
+  EXPECT_EQ(words(transition(state, none).action), "stop");
+  EXPECT_EQ(words(transition(state, none).state), "none, since 30");
 }
 
 TEST(GuideTransitions, CountPathsThatWereLeftBeforeTheirEnd) {

@@ -166,9 +166,22 @@ TEST(BeamInformation, isThatOfAllMapsAndMeasurements) {
     const double exact = byEnumeration(cells, K, term, [&](const Map& m, const Tell& tell) {
       lookAlong(model, m, allOf(m.size()), tell);
     });
-    std::vector<TreeCell> beam = valued(cells, model, Question(weightsOf({term}), K));
-    for (std::size_t i = 0; i < beam.size(); ++i) beam[i].parent = static_cast<int>(i) - 1;
-    ASSERT_NEAR(informationOfTree(beam), exact, 1e-12) << "trial " << trial;
+    std::vector<CellRun> beam;
+    for (const TreeCell& c : valued(cells, model, Question(weightsOf({term}), K)))
+      beam.push_back({c.pass, c.value, 1});
+    ASSERT_NEAR(informationOfBeam(beam), exact, 1e-12) << "trial " << trial;
+  }
+}
+
+TEST(BeamInformation, ofARunOfEqualCellsIsThatOfTheCells) {
+  Draw draw(2);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int count = 1 + draw.below(50);
+    const double pass = trial == 0 ? 1 : draw.number(), value = draw.number();
+    const CellRun wall{0.3, draw.number(), 1};
+    std::vector<CellRun> one(static_cast<std::size_t>(count), CellRun{pass, value, 1});
+    one.push_back(wall);
+    EXPECT_NEAR(informationOfBeam({{pass, value, count}, wall}), informationOfBeam(one), 1e-12);
   }
 }
 
@@ -214,6 +227,37 @@ TEST(BeamInformation, ofBeamsThatCrossIsWithinItsBounds) {
     apart += bounds.upper > bounds.lower + 1e-6;
   }
   EXPECT_GT(apart, 300);
+}
+
+TEST(BeamInformation, ofSeveralViewsIsWithinItsBounds) {
+  Draw draw(5);
+  for (int trial = 0; trial < 60; ++trial) {
+    const int K = 2;
+    const Cells cells = draw.cells(3, K);
+    const BeamModel model = draw.model(K);
+    const InformationTerm term = tree_abstraction::wholeClassVariable("all", 1, K);
+    std::vector<std::vector<int>> orders(2, {0, 1, 2});
+    for (auto& order : orders) std::shuffle(order.begin(), order.end(), draw.random());
+    const double exact = byEnumeration(cells, K, term, [&](const Map& m, const Tell& tell) {
+      lookAlong(model, m, orders[0], [&](long a, double pa) {
+        lookAlong(model, m, orders[1], [&](long b, double pb) { tell(a * 100 + b, pa * pb); });
+      });
+    });
+    const auto worth = valued(cells, model, Question(weightsOf({term}), K));
+    std::vector<std::vector<double>> reached(2, std::vector<double>(3));
+    std::vector<double> values;
+    for (const TreeCell& c : worth) values.push_back(c.value);
+    for (std::size_t v = 0; v < 2; ++v) {
+      double p = 1;
+      for (const int i : orders[v]) {
+        reached[v][static_cast<std::size_t>(i)] = p;
+        p *= worth[static_cast<std::size_t>(i)].pass;
+      }
+    }
+    const Bounds bounds = informationOfViews(reached, values);
+    ASSERT_LE(bounds.lower, exact + 1e-12) << "trial " << trial;
+    ASSERT_GE(bounds.upper, exact - 1e-12) << "trial " << trial;
+  }
 }
 
 TEST(BeamInformation, throughAFilterFarFromItsLimitsIsTheInformation) {

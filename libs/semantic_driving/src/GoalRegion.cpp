@@ -88,12 +88,10 @@ void GoalRegion::offer(Column c, double way) {
   if (!m_columns.contains(c)) return;
   const std::size_t i = m_columns.indexOf(c);
   if (way >= m_ways[i]) return;
-  const bool isRim = m_columns.isAtRim(c);
-  if ((m_marks[i] & kKept) && !isRim) return;
-  if (m_marks[i] & kReached) {
-    m_enclosed = false;
-    if (!m_goalReached && !isRim) return;
-  }
+  const bool isRim = m_columns.isAtRim(c), isReached = m_marks[i] & kReached,
+             isKept = m_marks[i] & kKept;
+  if (isReached && (isRim || !isKept)) m_enclosed = false;
+  if (!isRim && (isReached ? !m_goalReached : isKept)) return;
   m_rim = m_rim || isRim;
   m_size += std::isinf(m_ways[i]);
   m_ways[i] = way;

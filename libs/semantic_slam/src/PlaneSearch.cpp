@@ -168,9 +168,9 @@ class PlaneSearch::Search {
  private:
   static bool isWorse(const Candidate& a, const Candidate& b) { return a.score < b.score; }
 
-  /** As many of the best as a search gets to before it gives up, sorted; of those that are alike
-   * the last. */
+  /** As many of the best as a search gets to before it gives up. */
   std::vector<Candidate> coarsest(int least) {
+    const std::size_t most = m_most / 4 + 1;
     std::vector<Candidate> open;
     std::vector<int> scores;
     const int n = (2 * m_radius >> kCoarsest) + 1;  // along each axis
@@ -181,11 +181,17 @@ class PlaneSearch::Search {
         if (const int score = scores[static_cast<std::size_t>(i)]; score > least)
           open.push_back({kCoarsest, angle, (i % n << kCoarsest) - m_radius,
                           (i / n << kCoarsest) - m_radius, score});
+      if (open.size() / 2 < most) continue;  // large windows have more than memory is for
+      keepBest(open, most);
+      least = open.front().score - 1;
     }
-    std::stable_sort(open.begin(), open.end(), isWorse);
-    const auto kept = static_cast<std::ptrdiff_t>(std::min(m_most / 4 + 1, open.size()));
-    open.erase(open.begin(), open.end() - kept);
+    keepBest(open, most);
     return open;
+  }
+  /** Sorts them; of those that are alike it keeps the last. */
+  static void keepBest(std::vector<Candidate>& open, std::size_t most) {
+    std::stable_sort(open.begin(), open.end(), isWorse);
+    open.erase(open.begin(), open.end() - static_cast<std::ptrdiff_t>(std::min(most, open.size())));
   }
   /** Scores the window's coarsest squares, n x n, row by row. */
   void scoreAll(int n, int angle, std::vector<int>& scores) const {

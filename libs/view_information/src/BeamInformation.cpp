@@ -44,6 +44,17 @@ std::vector<double> BeamModel::after(int outcome, const double* p) const {
   return after;
 }
 
+double informationOfBeam(const std::vector<CellRun>& runs) {
+  double reached = 1, sum = 0;
+  for (const CellRun& run : runs) {
+    const double left = std::pow(run.pass, run.count);
+    const double observed = run.pass < 1 ? (1 - left) / (1 - run.pass) : run.count;
+    sum += reached * run.value * observed;
+    reached *= left;
+  }
+  return sum;
+}
+
 double informationOfTree(const std::vector<TreeCell>& cells) {
   std::vector<double> leaves(cells.size());  // P(a beam leaves the cell)
   double sum = 0;
@@ -72,6 +83,17 @@ Bounds informationOfNet(const std::vector<TreeCell>& cells,
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const double a = most[i] * cells[i].value, b = (1 - none[i]) * cells[i].value;
     bounds.lower += std::min(a, b), bounds.upper += std::max(a, b);
+  }
+  return bounds;
+}
+
+Bounds informationOfViews(const std::vector<std::vector<double>>& reached,
+                          const std::vector<double>& values) {
+  Bounds bounds;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    double most = 0, sum = 0;
+    for (const std::vector<double>& view : reached) most = std::max(most, view[i]), sum += view[i];
+    bounds.lower += most * values[i], bounds.upper += sum * values[i];
   }
   return bounds;
 }

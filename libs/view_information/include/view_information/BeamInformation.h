@@ -7,7 +7,7 @@
 
 /** \file
  * What beams and views tell, in nats: exact under the model that the class filter inverts. The
- * formulas (a) to (g) stand in doc/how-it-works/exploration.md. */
+ * formulas (a) to (h) stand in doc/how-it-works/exploration.md. */
 
 namespace view_information {
 
@@ -59,7 +59,7 @@ class Question {
   /** How far a mean over many moves when one's belief moves from q to p: weighted chi-square
    * distance of ignored (lower) and relevant (upper) terms. */
   Bounds distance(const double* p, const double* q, const double* mean) const;
-  /** (f): how far an outcome moves what is believed of a cell, the weighted divergence of the terms
+  /** (g): how far an outcome moves what is believed of a cell, the weighted divergence of the terms
    * after it from before. Its mean over the outcomes as the belief predicts them is information().
    */
   double surprise(const BeamModel& model, const double* p, int outcome) const;
@@ -85,13 +85,21 @@ class Question {
   std::vector<int> m_kinds;
 };
 
+/** A stretch of equal cells along a beam. */
+struct CellRun {
+  double pass = 1;   ///< P(a beam that reaches the first cell passes it)
+  double value = 0;  ///< what an observation of one of them tells
+  int count = 1;
+};
+/** (b): what a beam tells, sum of P(reached) times value over its cells. */
+double informationOfBeam(const std::vector<CellRun>& runs);
+
 /** A cell of a view in which each cell is reached through one other. */
 struct TreeCell {
   int parent = -1;  ///< index of a cell before this one; -1: the sensor is there
   double pass = 1, value = 0;
 };
-/** (b), (e): what a view tells if each cell is observed once, as a scan is inserted: sum of
- * P(reached) times value. A beam is a view whose cells are each other's parents. */
+/** (e): what a view tells if each cell is observed once, as a scan is inserted. */
 double informationOfTree(const std::vector<TreeCell>& cells);
 
 /** (e): what a view of beams that cross tells, each cell observed once. A cell is reached at least
@@ -99,7 +107,7 @@ double informationOfTree(const std::vector<TreeCell>& cells);
  * \param cells without regard to their parents \param beams indices of cells in order */
 Bounds informationOfNet(const std::vector<TreeCell>& cells,
                         const std::vector<std::vector<int>>& beams);
-/** (g): what a view is expected to add to sum of weights times I_Y(T), the objective without the
+/** (h): what a view is expected to add to sum of weights times I_Y(T), the objective without the
  * price of leaves. The tree has the cells as leaves, as equal shares of its space. The upper bound
  * has what is told of each cell. How far the mean over all cells moves, which is less, is not taken
  * off.
@@ -108,5 +116,9 @@ Bounds informationOfNet(const std::vector<TreeCell>& cells,
 Bounds growthOfTree(const Question& question, const BeamModel& model,
                     const std::vector<std::vector<double>>& beliefs,
                     const std::vector<double>& reached, const std::vector<double>& counts);
+/** (f): what several views tell together. \param reached P(reached) by view and cell
+ * \param values of each cell */
+Bounds informationOfViews(const std::vector<std::vector<double>>& reached,
+                          const std::vector<double>& values);
 
 }  // namespace view_information
