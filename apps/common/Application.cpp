@@ -81,6 +81,7 @@ void Outputs::check(const std::vector<fs::path>& files, const std::vector<fs::pa
   for (const fs::path& file : files) {
     if (!file.empty() && !seen.insert(file.lexically_normal()).second)
       throw std::runtime_error(file.string() + ": would be written twice");
+    if (!m_overwrite && !file.empty()) strict_files::declareNew(file);
     if (!fs::exists(fs::symlink_status(file, error))) continue;
     for (const fs::path& input : inputs)
       if (fs::equivalent(file, input, error))
