@@ -42,9 +42,9 @@ void* aligned_malloc(std::size_t bytes, std::size_t alignment) {
 
 }  // namespace mrpt
 
-// The standard library's other forms call these, but for large alignments. A sanitizer has its own
-// for what is left out. Not inline: or the compiler pairs malloc() here with delete there, and
-// warns.
+// The standard library's other forms call these, but for large alignments. The address
+// sanitizer has its own of these, whose memory is freed here: alloc_dealloc_mismatch=0. Not inline:
+// or the compiler pairs malloc() here with delete there, and warns.
 #define NOT_INLINE __attribute__((noinline))
 NOT_INLINE void* operator new(std::size_t size) {
   if (!AllocationLimit::isAllowed(size)) throw PieceTooLarge();

@@ -81,6 +81,7 @@ void Outputs::check(const std::vector<fs::path>& files, const std::vector<fs::pa
   for (const fs::path& file : files) {
     if (!file.empty() && !seen.insert(file.lexically_normal()).second)
       throw std::runtime_error(file.string() + ": would be written twice");
+    if (!m_overwrite && !file.empty()) strict_files::declareNew(file);
     if (!fs::exists(fs::symlink_status(file, error))) continue;
     for (const fs::path& input : inputs)
       if (fs::equivalent(file, input, error))
@@ -299,6 +300,30 @@ void makeHelpReadable(CLI::App& app) {
 namespace {
 
 constexpr int kUsage = 64;  // EX_USAGE of sysexits.h
+
+[[noreturn]] void leaveSaying(const char* what) {
+  const char* const line[] = {program_invocation_short_name, ": ", what, "\n"};
+  for (const char* part : line) (void)!write(STDERR_FILENO, part, std::strlen(part));
+  _exit(1);
+}
+
+/** Where nobody can catch it (in libraries before main(), in threads), a limit of memory ends the
+ * program with a message, too. */
+[[noreturn]] void leaveUncaught() {
+  if (!std::current_exception()) std::abort();
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    leaveSaying("more memory is needed than there is");
+  } catch (const std::exception& e) {
+    leaveSaying(e.what());
+  }
+}
+
+void setLeaving() { std::set_terminate(leaveUncaught); }
+
+/** Before all libraries' own beginnings. */
+[[gnu::section(".preinit_array"), gnu::used]] void (*const atFirst)() = setLeaving;
 
 /** Begin and end of a message that quotes a file, whose words may be as long as the file. */
 std::string shortened(std::string text) {

@@ -4,7 +4,9 @@
 #include <semantic_octree/TreeFile.h>
 #include <strict_files/Words.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <optional>
 
@@ -63,15 +65,25 @@ void load(const Cli& cli, const fs::path& file, std::deque<StoredMap>& maps) {
   notes() << file.string() << ": " << maps.back().tree().getNumLeafNodes() << " leaves\n";
 }
 
+/** What to say of voxels that differ, with the command that makes them alike if there is one. */
+std::string voxelsOf(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
+                     const SemanticOcTree& b) {
+  using strict_files::textOf;
+  const double one = a.getResolution(), other = b.getResolution();
+  const std::string text = "voxels: " + textOf(one) + " m and " + textOf(other) + " m";
+  const double doublings = std::log2(one / other);
+  if (std::abs(doublings - std::round(doublings)) > 1e-6) return text;
+  return text + "; semantic-map-edit " + (one < other ? first : second).string() +
+         " --resolution " + textOf(std::max(one, other)) + " -o coarse.semantic makes them alike";
+}
+
 void checkAlike(const fs::path& first, const SemanticOcTree& a, const fs::path& second,
                 const SemanticOcTree& b) {
   const auto differ = [&](const std::string& what) {
     throw std::runtime_error(first.string() + " and " + second.string() + " have different " +
                              what);
   };
-  using strict_files::textOf;
-  if (a.getResolution() != b.getResolution())
-    differ("voxels: " + textOf(a.getResolution()) + " m and " + textOf(b.getResolution()) + " m");
+  if (a.getResolution() != b.getResolution()) differ(voxelsOf(first, a, second, b));
   if (a.classes() != b.classes()) differ("classes");
   if (!(a.filterParameters() == b.filterParameters())) differ("filter parameters");
 }

@@ -107,9 +107,11 @@ namespace {
 constexpr int kFilesWidth = 230;
 }
 
-FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted)
+FilesPanel::FilesPanel(Viewer& viewer, TrackScene& tracks, PlanPanel& plan,
+                       const WantedTiles& wanted)
     : m_viewer(viewer),
       m_tracks(tracks),
+      m_plan(plan),
       m_wantedTiles(wanted),
       m_panel(viewer.window().addPanel(ViewWindow::Side::Left, "Files", kFilesWidth)) {
   m_list = addScroll(m_panel->content(), kFilesWidth, 40);
@@ -128,7 +130,9 @@ void FilesPanel::openWanted() {
 
 void FilesPanel::open(const std::string& file) {
   std::string text = "opened " + file + ": ";
-  if (isTrack(file)) {
+  if (std::filesystem::path(file).extension() == ".yaml") {
+    text += m_plan.open(file);
+  } else if (isTrack(file)) {
     m_tracks.add(readTrack(file));
     listTracks();
     text +=

@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt_compat/Drawing.h>
 
+#include "PlanPanel.h"
 #include "Track.h"
 #include "map_window/ViewWindow.h"
 #include "map_window/Viewer.h"
@@ -48,10 +49,11 @@ class TrackScene {
   mrpt_compat::drawing::CSetOfObjects::Ptr m_bands = mrpt_compat::drawing::CSetOfObjects::Create();
 };
 
-/** Opens what is dropped onto the window, maps and what lies upon them, and lists the latter. */
+/** Opens what is dropped onto the window: maps, what lies upon them, which it lists, and what paths
+ * are planned by. */
 class FilesPanel {
  public:
-  FilesPanel(Viewer& viewer, TrackScene& tracks, const WantedTiles& wanted);
+  FilesPanel(Viewer& viewer, TrackScene& tracks, PlanPanel& plan, const WantedTiles& wanted);
   FilesPanel(const FilesPanel&) = delete;
 
  private:
@@ -62,6 +64,7 @@ class FilesPanel {
 
   Viewer& m_viewer;
   TrackScene& m_tracks;
+  PlanPanel& m_plan;
   const WantedTiles m_wantedTiles;
   Panel* m_panel;
   nanogui::Widget* m_list;

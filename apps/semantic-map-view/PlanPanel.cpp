@@ -5,11 +5,13 @@
 #include <mrpt_compat/Drawing.h>
 #include <semantic_abstraction/Abstraction.h>
 #include <semantic_planning/planner/OrderFile.h>
+#include <strict_files/TextFile.h>
 
 #include <cmath>
 #include <ostream>
 #include <utility>
 
+#include "FilesPanel.h"
 #include "Terminal.h"
 #include "Track.h"
 #include "map_window/Widgets.h"
@@ -77,10 +79,9 @@ PlanPanel::PlanPanel(Viewer& viewer, std::filesystem::path orderFile,
   addButton(row, "goal", 90, [this] { await(Awaited::Goal); });
   addText(content, "may drive on, best first:", kPlanWidth);
   m_list = addScroll(content, kPlanWidth, 110);
-  addText(content, "vehicle: " + (vehicle.empty() ? "small robot" : vehicle.filename().string()),
-          kPlanWidth);
+  m_vehicleName = addText(content, "vehicle: small robot", kPlanWidth);
   for (auto& line : m_lines) line = addLines(content, kPlanWidth);
-  if (!vehicle.empty()) m_vehicle = semantic_planning::loadVehicle(vehicle);
+  if (!vehicle.empty()) open(vehicle);
   readOrder();
   viewer.window().marks()->insert(m_marks);
   viewer.onActivated([this] { forget(); });
@@ -109,6 +110,19 @@ void PlanPanel::forget() {
   m_marks->clear();
   say("");
   readOrder();
+}
+
+std::string PlanPanel::open(const std::filesystem::path& file) {
+  if (strict_files::readText(file).find("best_to_worst") == std::string::npos) {
+    m_vehicle = semantic_planning::loadVehicle(file);
+    m_vehicleName->setCaption("vehicle: " + file.filename().string());
+    planAnew();
+    return "the vehicle";
+  }
+  semantic_planning::loadClassOrder(file, m_viewer.layer().map().classes());
+  m_orderFile = file;
+  readOrder();
+  return "an order of classes";
 }
 
 void PlanPanel::readOrder() {

@@ -17,6 +17,9 @@ class PlanPanel {
   PlanPanel(Viewer& viewer, std::filesystem::path order, const std::filesystem::path& vehicle);
   PlanPanel(const PlanPanel&) = delete;
 
+  /** An order of classes, or a vehicle (YAML), by which is planned from now on.
+   * \return what it is \throw std::runtime_error naming file, line and value */
+  std::string open(const std::filesystem::path& file);
   /** Puts start or goal where the hand points. \return false: it means something else now. */
   bool place(const map_view::Ray& ray);
   /** Turns it to where the hand points now, if that is some way off. */
@@ -61,6 +64,7 @@ class PlanPanel {
   std::function<void(Ranks&)> m_change;
   nanogui::Widget* m_list;
   std::array<nanogui::Label*, 2> m_lines{};
+  nanogui::Label* m_vehicleName;
   mrpt_compat::drawing::CSetOfObjects::Ptr m_marks = mrpt_compat::drawing::CSetOfObjects::Create();
 };
 

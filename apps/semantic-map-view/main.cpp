@@ -176,7 +176,7 @@ struct Panels {
         compress(viewer, cli.weights),
         why(viewer, compress),
         plan(viewer, cli.order, cli.vehicle),
-        files(viewer, tracks, cli.wantedTiles()) {
+        files(viewer, tracks, plan, cli.wantedTiles()) {
     if (cli.compress) compress.switchOn(true);
     cli.panels ? listen(viewer.window()) : viewer.window().hidePanels();
   }

@@ -52,6 +52,27 @@ TEST_P(Program, endsWith64AndItsNameAfterAWrongCommandLine) {
   EXPECT_TRUE(contains(wrong.output, GetParam() + " --help"));
 }
 
+TEST_P(Program, endsWithAMessageUnderAnyLimitOfMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes terabytes of addresses";
+#endif
+  const auto statusWith = [this](int megabytes) {
+    const ProgramRun run = runCommand("ulimit -c 0; ulimit -v " + std::to_string(1024 * megabytes) +
+                                      "; " MSO_BIN_DIR "/" + GetParam() + " --version");
+    EXPECT_TRUE(run.status == 0 || run.status == 1 || run.status == 127)
+        << run.status << " with " << megabytes << " MB: " << run.output;
+    EXPECT_NE(run.output, "");
+    return run.status;
+  };
+  int tooLittle = 8, enough = 1032;
+  while (enough - tooLittle > 4) {
+    const int middle = (tooLittle + enough) / 2;
+    (statusWith(middle) == 0 ? enough : tooLittle) = middle;
+  }
+  for (int megabytes = std::max(8, enough - 20); megabytes < enough + 8; megabytes += 4)
+    statusWith(megabytes);
+}
+
 TEST_P(Program, speaksToPeopleInItsHelp) {
   std::string help = run("--help").output;
   if (GetParam() == "dataset2rawlog")

@@ -194,7 +194,8 @@ TEST_F(SemanticMapMerge, mapsThatDoNotFitAreRefusedByName) {
     expectRefusal(merge({name(0), map}, "out.semantic"), {name(0), map, why});
     EXPECT_FALSE(std::filesystem::exists(folder / "out.semantic"));
   };
-  refuse("fine.semantic", "voxels: 0.2 m and 0.1 m");
+  refuse("fine.semantic", "voxels: 0.2 m and 0.1 m; semantic-map-edit " + path("fine.semantic") +
+                              " --resolution 0.2 -o coarse.semantic makes them alike");
   refuse("classes.semantic", "classes");
   refuse("filter.semantic", "filter parameters");
   expectRefusal(merge({name(0), "none.semantic"}, "out.semantic"), {"none.semantic"});

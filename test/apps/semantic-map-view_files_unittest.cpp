@@ -126,6 +126,10 @@ TEST_F(SemanticMapViewFiles, InFoldersOfTilesAreShownAsFarAsMemoryAllows) {
   succeeded(run({"--memory", megabytes, "--clip=-6,-1,-1,-4,1,1"}));
   EXPECT_EQ(classAt(picture(), pixelOf(-5, 0, 0.2)), 'r');
   EXPECT_EQ(classAt(picture(), pixelOf(-5, 2, 0.2)), ' ');
+  for (const auto& entry : std::filesystem::directory_iterator(path("tiles")))
+    if (entry.path().extension() == ".semantic") std::filesystem::resize_file(entry.path(), 9);
+  const std::string damaged = run({}).errors;
+  EXPECT_TRUE(contains(damaged, path("tiles")) && !contains(damaged, "--clip")) << damaged;
 }
 
 TEST_F(SemanticMapView, ShowsUnknownSpaceWithinWhatIsKnownOrCut) {

@@ -221,14 +221,26 @@ TEST_F(SemanticMapViewPlans, AnewAfterTheOrderOfClassesWasDragged) {
   EXPECT_GT(lengths()[1], lengths()[0] + 0.2) << said;
 }
 
-TEST_F(SemanticMapViewPlans, WithClassesThatAreChosenInTheWindow) {
+TEST_F(SemanticMapViewPlans, WithClassesAndAVehicleThatAreChosenInTheWindow) {
   SKIP_WITHOUT_WINDOWS();
+#ifndef MSO_DROP_FILES
+  GTEST_SKIP() << "needs the development files of X11";
+#endif
+  folder.write("wide.yaml", "footprint: [[-4, -4], [4, -4], [4, 4], [-4, 4]]\n");
+  folder.write("other.yaml", "best_to_worst: [grass]\n");
   said = work({}, {"touch 745 214", "650 244 click where the vehicle is",
                    at(pixelOf(-3, -2, 0.2)) + " start at -3", "745 244 click where it is to go",
                    at(pixelOf(-3, 3, 0.2)) + " no path: no class is allowed", "616 310 order: road",
-                   at(pixelOf(-1.1, -2.1, 0.2)) + " occupied, road"});
+                   at(pixelOf(-1.1, -2.1, 0.2)) + " occupied, road",
+                   "drop " + path("wide.yaml") + " opened .*wide.yaml: the vehicle",
+                   "drop " + path("other.yaml") + " opened .*other.yaml: an order of classes"});
+  const std::size_t chosen = said.find("order: road"), wide = said.find("no path:", chosen);
   ASSERT_EQ(lengths().size(), 1u) << said;
-  EXPECT_GT(said.find("path of"), said.find("order: road")) << said;
+  const std::size_t found = said.find("path of");
+  EXPECT_GT(found, chosen) << said;
+  EXPECT_LT(found, wide) << said;
+  EXPECT_NE(wide, std::string::npos) << "the wide one has no room\n" << said;
+  EXPECT_NE(said.find("no path:", wide + 1), std::string::npos) << "nor on grass\n" << said;
 }
 
 /** Gaps between panels, along a column of pixels that is in their borders. */
@@ -287,4 +299,47 @@ TEST_F(SemanticMapView, IsCutWhereNumbersSay) {
   EXPECT_EQ(classAt(cut, pixelOf(-2, 2, 0.2)), 'r');
   EXPECT_EQ(classAt(cut, pixelOf(1, 2, 0.2)), 'g');
   EXPECT_EQ(classAt(cut, pixelOf(3, 2, 0.2)), ' ');
+}
+
+TEST_F(SemanticMapView, PutsARingAroundTheCellThatWasPicked) {
+  SKIP_WITHOUT_WINDOWS();
+  const cv::Point cell = pixelOf(-1.1, -2.1, 0.2);
+  work({}, {at(cell) + " occupied, road", "key Shift_L", "picture " + path("picked.png")});
+  const cv::Mat picked = cv::imread(path("picked.png"));
+  ASSERT_FALSE(picked.empty());
+  for (const cv::Point& way : {cv::Point(16, 0), cv::Point(-16, 0), cv::Point(0, 16)}) {
+    int yellow = 0;
+    for (int i = -3; i <= 3; ++i) {
+      const cv::Vec3b c = picked.at<cv::Vec3b>(cell + way + way * i / 16);
+      yellow += c[2] > 200 && c[1] > 170 && c[0] < 80;
+    }
+    EXPECT_GT(yellow, 0) << way;
+  }
+}
+
+TEST_F(SemanticMapView, ComesNearerToThePointer) {
+  SKIP_WITHOUT_WINDOWS();
+  const cv::Point p = pixelOf(-3.1, 3.1, 0.1), q = pixelOf(2.1, -3.1, 0.1);
+  const std::string said =
+      work({}, {at(p) + " occupied", at(q) + " occupied", "wheel " + at(p) + " 8",
+                at(p) + " occupied", at(q) + " occupied"});
+  std::vector<std::string> keys;
+  const std::regex key("key \\d+ \\d+ \\d+");
+  for (std::sregex_iterator i(said.begin(), said.end(), key), end; i != end; ++i)
+    if (keys.empty() || i->str() != keys.back()) keys.push_back(i->str());
+  ASSERT_EQ(keys.size(), 4u) << said;
+  EXPECT_EQ(keys[0], keys[2]) << "it stays below the pointer";
+  EXPECT_NE(keys[1], keys[3]) << "all else moves away";
+}
+
+TEST_F(SemanticMapView, ClosesMenusWithEscape) {
+  SKIP_WITHOUT_WINDOWS();
+  const auto picture = [this](const std::string& name) { return "picture " + path(name); };
+  // The menu of colors, which unfolds to the right. The pointer rests elsewhere.
+  work({}, {"touch 450 680", picture("closed.png"), "touch 158 78", "touch 450 22",
+            picture("open.png"), "key Escape", "touch 450 680", picture("again.png")});
+  const cv::Rect beside(262, 8, 120, 200);
+  const auto part = [&](const std::string& name) { return cv::imread(path(name))(beside).clone(); };
+  EXPECT_GT(cv::norm(part("closed.png"), part("open.png"), cv::NORM_INF), 100);
+  EXPECT_EQ(cv::norm(part("closed.png"), part("again.png"), cv::NORM_INF), 0);
 }

@@ -85,12 +85,15 @@ TEST_F(Interrupted, killedItLeavesWhatTheNextRunRemoves) {
   EXPECT_FALSE(leftAnything());
 }
 
-/** Runs a program in the folder, asks it once to stop when it has begun its output, and waits. */
-ProgramRun stopEarly(const TemporaryFolder& folder, const std::string& command) {
+/** Runs a program in the folder, asks it once to stop when it has begun its output, and waits.
+ * \param meanwhile a command of the shell before that */
+ProgramRun stopEarly(const TemporaryFolder& folder, const std::string& command,
+                     const std::string& meanwhile = ":") {
   folder.write("script", "cd '" + folder.path().string() + "'\n" + MSO_BIN_DIR "/" + command +
                              " &\npid=$!\n" +
                              "until ls -d .unfinished-* */.unfinished-* 2>/dev/null | grep -q .\n" +
-                             "do sleep 0.05; done\nsleep 0.5\nkill -INT $pid\nwait $pid\n");
+                             "do sleep 0.05; done\n" + meanwhile +
+                             "\nsleep 0.5\nkill -INT $pid\nwait $pid\n");
   return runCommand("sh " + (folder / "script").string());
 }
 
@@ -117,6 +120,22 @@ TEST(StoppedEarly, aRobotHasDrivenAsFarAsItGot) {
   EXPECT_EQ(run.status, 130) << run.output;
   EXPECT_EQ(nlohmann::json::parse(folder.read("out/drive.json"))["end"], "stopped");
   EXPECT_TRUE(fs::exists(folder / "out/map.semantic"));
+}
+
+TEST(WrittenMeanwhile, byOthersStaysAndTheResultIsKeptBesideIt) {
+  const TemporaryFolder folder;
+  const std::string command =
+      "synth-rawlog -o a.rawlog --frames 1000000 --sensor lidar --columns 60";
+  const ProgramRun run = stopEarly(folder, command, "echo theirs >a.rawlog");
+  EXPECT_EQ(run.status, 1) << run.output;
+  EXPECT_TRUE(contains(run.output, "somebody else has written it since"));
+  EXPECT_EQ(folder.read("a.rawlog"), "theirs\n");
+  const std::size_t name = run.output.rfind("kept-");
+  ASSERT_NE(name, std::string::npos) << run.output;
+  const std::string kept = run.output.substr(name, run.output.find('\n', name) - name);
+  EXPECT_TRUE(labeled_cloud::RawlogReader(folder / kept).next()) << kept;
+  EXPECT_EQ(stopEarly(folder, command + " -f", "echo theirs >a.rawlog").status, 130);
+  EXPECT_TRUE(labeled_cloud::RawlogReader(folder / "a.rawlog").next());
 }
 
 /** How often: MSO_KILLS, or a few times. */

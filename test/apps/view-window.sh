@@ -1,8 +1,9 @@
 #!/bin/bash
 # view-window.sh OUTPUT PROGRAM ARGUMENTS... -- STEPS...
 # Runs a program that opens a window, does one step after the other, and ends the program. A step "X Y WORDS" clicks there
-# and waits until the program has said the words once more; "drag X Y X2 Y2 WORDS" drags once; "drop FILE WORDS" drops the file onto the window, with the program $DROP_FILES; "picture
-# FILE" takes one of the screen. Without waiting for words: "touch X Y" clicks, "enter X Y TEXT" enters;
+# and waits until the program has said the words once more; "drag X Y X2 Y2 WORDS" drags once; "drop FILE WORDS" drops
+# the file onto the window, with the program $DROP_FILES; "picture FILE" takes one of the screen. Without waiting for words:
+# "touch X Y" clicks, "enter X Y TEXT" enters, "wheel X Y N" turns the wheel N times forward there, "key NAME" presses a key;
 # each is on the screen half a second later. What the program says goes to OUTPUT. Fails if a window or words do not come.
 output=$1 program=()
 shift
@@ -24,6 +25,9 @@ for step in "$@"; do
     "picture "*) import -window root "${step#picture }"; continue ;;
     "touch "*) read -r kind x y <<< "$step"; press; xdotool mouseup 1 sleep 0.5; continue ;;
     "enter "*) read -r kind x y text <<< "$step"; press; xdotool mouseup 1; enter; sleep 0.5; continue ;;
+    "wheel "*) read -r kind x y n <<< "$step"
+      xdotool mousemove --window "$window" "$x" "$y" sleep 0.2 click --repeat "$n" --delay 100 4 sleep 0.5; continue ;;
+    "key "*) xdotool key "${step#key }" sleep 0.5; continue ;;
     "drag "*) read -r kind x y x2 y2 words <<< "$step" ;;
     "drop "*) read -r kind file words <<< "$step" ;;
     *) read -r x y words <<< "$step" ;;

@@ -148,6 +148,23 @@ TEST(MapStreamFaults, statementsThatCannotBeAreRefused) {
   EXPECT_TRUE(refused({1, 0, factors}));
 }
 
+TEST(MapStreamFaults, aDictionaryThatCannotBeIsRefused) {
+  const std::string none(1, '\0'), magic = "\x37\xa4\x30\xec";  // RFC 8878
+  EXPECT_EQ(errorOf([&] { PartCoder(K, 10).fromText(none + "any bytes are one"); }), "");
+  EXPECT_EQ(errorOf([&] { PartCoder(K, 10).fromText(none + magic + "but not these"); }),
+            "altered: a part of a tree that cannot be");
+}
+
+TEST(MapStreamFaults, partsOfManyBytesInAFewAreRefused) {
+  PartCoder coder(K, 10);
+  coder.fromText(std::string(1, '\0'));
+  EXPECT_EQ(errorOf([&] { coder.decode(packed(std::string(5 << 20, '\0'))); }),
+            "altered: a part of a tree that cannot be");
+  std::string lies = packed(std::string(1000, '\0'));
+  for (const std::size_t at : {5u, 6u}) lies[at] = '\x7f';  // its size
+  EXPECT_NE(errorOf([&] { coder.decode(lies); }), "");
+}
+
 TEST(MapStreamFaults, nothingStaysOfADescriptionThatFailed) {
   MapReceiver receiver(kStream);
   const auto accept = [&](std::uint32_t number, const std::string& content) {

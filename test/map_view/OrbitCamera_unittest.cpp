@@ -31,6 +31,24 @@ Eigen::Vector2d pixelOf(const OrbitCamera& camera, const Eigen::Vector3d& p) {
           kHeight / 2.0 - scale * to.dot(camera.up())};
 }
 
+TEST(OrbitCamera, SaysWhereAPlaceIsSeen) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> meters(-40, 40);
+  int behind = 0;
+  for (int i = 0; i < 200; ++i) {
+    const OrbitCamera camera = someCamera(meters(random) * 4, meters(random) * 2);
+    const Eigen::Vector3d place(meters(random), meters(random), meters(random));
+    const auto pixel = camera.pixelOf(place, kWidth, kHeight);
+    const bool isAhead = (place - camera.position()).dot(camera.forward()) > 0;
+    ASSERT_EQ(pixel.has_value(), isAhead);
+    behind += !isAhead;
+    if (pixel) {
+      EXPECT_LT((*pixel + Eigen::Vector2d(0.5, 0.5) - pixelOf(camera, place)).norm(), 1e-6);
+    }
+  }
+  EXPECT_GT(behind, 10);
+}
+
 TEST(OrbitCamera, LooksNorthUpFromAboveAndEastFromTheWest) {
   const OrbitCamera top = someCamera(-90, 90);
   EXPECT_TRUE(top.position().isApprox(Eigen::Vector3d(3, -4, 27), 1e-9));

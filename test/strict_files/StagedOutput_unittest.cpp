@@ -348,6 +348,55 @@ TEST_F(OutputFolders, nothingTakesItsPlaceWhereOneOfThemCannot) {
   EXPECT_EQ(folder.read("a"), "before");
 }
 
+/** The only entry that begins with "kept-". */
+fs::path keptIn(const fs::path& folder) {
+  fs::path kept;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename().string().rfind("kept-", 0) == 0) {
+      EXPECT_TRUE(kept.empty());
+      kept = entry.path();
+    }
+  return kept;
+}
+
+TEST_F(StagedFiles, thatAreToBeNewAreKeptBesideWhatSomebodyElseWrote) {
+  strict_files::declareNew(folder / "./a.txt");
+  {
+    StagedFile file(folder / "a.txt");
+    write(file.path(), "ours");
+    write(folder / "a.txt", "theirs");
+    const std::string error = errorOf([&] { file.commit(); });
+    const std::string kept = keptIn(folder.path()).string();
+    EXPECT_TRUE(contains(error, "a.txt: cannot be written: somebody else has written it"));
+    EXPECT_TRUE(contains(error, "is now " + kept));
+    EXPECT_EQ(fs::path(kept).extension(), ".txt");
+  }
+  EXPECT_EQ(strict_files::readText(keptIn(folder.path())), "ours");
+  EXPECT_EQ(folder.read("a.txt"), "theirs");
+  fs::remove(folder / "a.txt");
+  for (const char* text : {"first", "second"}) strict_files::writeText(folder / "a.txt", text);
+  EXPECT_EQ(folder.read("a.txt"), "second") << "its own is replaced";
+}
+
+TEST_F(OutputFolders, thatAreToBeNewAreKeptBesideWhatSomebodyElseWrote) {
+  for (const char* name : {"a", "b", "c", "d"}) strict_files::declareNew(folder / "out" / name);
+  {
+    OutputFolder output(folder / "out");
+    for (const char* name : {"a", "b", "d"}) write(output.staged(name), "ours");
+    for (const char* name : {"b", "c"}) write(folder / "out" / name, "theirs");
+    output.commit({"c", "d"});
+    EXPECT_EQ(folder.read("out/d"), "ours");
+    EXPECT_TRUE(contains(errorOf([&] {
+                           output.commit({"a", "b"});
+                         }),
+                         "b: cannot be written: some"));
+  }
+  for (const char* name : {"a", "b"})
+    EXPECT_EQ(strict_files::readText(keptIn(folder / "out") / name), "ours");
+  for (const char* name : {"b", "c"}) EXPECT_EQ(folder.read(std::string("out/") + name), "theirs");
+  EXPECT_FALSE(fs::exists(folder / "out/a"));
+}
+
 TEST_F(OutputFolders, filesTakeTheirPlaceTogether) {
   folder.write("out/a", "before");
   folder.write("out/b", "before");

@@ -15,16 +15,20 @@ using semantic_octree::SemanticOcTree;
 
 namespace {
 
-SemanticOcTree openFolder(const fs::path& folder, const WantedTiles& wanted) try {
+SemanticOcTree openFolder(const fs::path& folder, const WantedTiles& wanted) {
   semantic_octree::MapFolderOptions options;
   options.memory = wanted.memory;
   options.wanted = [&](const Eigen::AlignedBox3d& cube) { return cube.intersects(wanted.box); };
   SemanticOcTree map = MapFolder::emptyMap(folder);
-  MapFolder(map, folder, MapFolder::Access::Read, options)
-      .bringAll(std::size_t(wanted.memory * 1e6));
+  auto tiles = std::make_unique<MapFolder>(map, folder, MapFolder::Access::Read, options);
+  try {
+    tiles->checkFits(std::size_t(wanted.memory * 1e6));
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(strict_files::messageOf(e) + ": --clip shows a part");
+  }
+  tiles->bringAll();
+  tiles.reset();
   return map;
-} catch (const std::runtime_error& e) {
-  throw std::runtime_error(strict_files::messageOf(e) + ": --clip shows a part");
 }
 
 /** The name of a file or of a folder. */

@@ -51,6 +51,7 @@ AskPanel::AskPanel(Viewer& viewer) : m_viewer(viewer) {
 
 void AskPanel::clear() {
   m_mark->clear();
+  m_viewer.window().setRing({});
   m_shares->setBars({});
   for (auto* line : m_lines) line->setCaption("");
 }
@@ -89,6 +90,7 @@ void AskPanel::show(const map_view::ViewCell& cell) {
   if (bars.size() > kMostBars) bars.resize(kMostBars);
   m_shares->setBars(std::move(bars));
   m_mark->insert(boxAround(answer));
+  m_viewer.window().setRing(answer.center);
 }
 
 using nanogui::Widget;

@@ -19,10 +19,16 @@ namespace {
 constexpr double kIdle = 0.5;  // s between frames without a reason
 constexpr int kClick = 3;      // pixels that the mouse may move between press and release
 constexpr int kPictureBorder = 8, kBetweenPanels = 8;
+constexpr float kRing = 16;  // pixels, radius
 
 const std::string kInstead =
     "; `semantic-map-export MAP -o map.png` draws a map without a window, xvfb-run gives programs "
     "a display";
+
+void closeMenus(nanogui::Widget& widget) {
+  if (auto* button = dynamic_cast<nanogui::PopupButton*>(&widget)) button->setPushed(false);
+  for (nanogui::Widget* child : widget.children()) closeMenus(*child);
+}
 
 /** Name of the display; empty: there is none. */
 std::string displayName() {
@@ -106,6 +112,20 @@ void ViewWindow::arrangePanels() {
       y += panel->height() + kBetweenPanels;
     }
   }
+}
+
+/** Below the panels. */
+void ViewWindow::draw(NVGcontext* context) {
+  const auto pixel = m_ring ? orbitCamera().pixelOf(*m_ring, mSize.x(), mSize.y()) : std::nullopt;
+  for (const float width : {6.f, 3.f}) {
+    if (!pixel) break;
+    nvgBeginPath(context);
+    nvgCircle(context, float(pixel->x()), float(pixel->y()), kRing);
+    nvgStrokeWidth(context, width);
+    nvgStrokeColor(context, width > 3 ? nanogui::Color(0, 255) : nanogui::Color(255, 215, 0, 255));
+    nvgStroke(context);
+  }
+  CDisplayWindowGUI::draw(context);
 }
 
 void ViewWindow::showPicture(const mrpt::img::CImage& picture, int width) {
@@ -233,11 +253,22 @@ bool ViewWindow::mouseButtonEvent(const Vector2i& p, int button, bool down, int 
 
 bool ViewWindow::scrollEvent(const Vector2i& p, const nanogui::Vector2f& rel) {
   redraw();
-  return CDisplayWindowGUI::scrollEvent(p, rel);
+  const map_view::OrbitCamera before = orbitCamera();
+  const bool used = CDisplayWindowGUI::scrollEvent(p, rel);
+  map_view::OrbitCamera after = orbitCamera();
+  if (after.distance == before.distance) return used;
+  // What is under the pointer, as far away as the target, stays there.
+  const map_view::Ray ray = before.rayThrough(p.x(), p.y(), mSize.x(), mSize.y());
+  const Eigen::Vector3d place =
+      ray.origin + before.distance / ray.direction.dot(before.forward()) * ray.direction;
+  after.target = place + after.distance / before.distance * (before.target - place);
+  setOrbitCamera(after);
+  return used;
 }
 
 bool ViewWindow::keyboardEvent(int key, int scancode, int action, int modifiers) {
   redraw();
+  if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) closeMenus(*this);
   return CDisplayWindowGUI::keyboardEvent(key, scancode, action, modifiers);
 }
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "Widgets.h"
 
@@ -38,6 +39,8 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   /** What panels do goes on without a hand. */
   void hidePanels();
 
+  /** A ring around a place (m, map frame), whatever hides it; none: no place. */
+  void setRing(const std::optional<Eigen::Vector3d>& place) { m_ring = place; }
   /** In the lower right corner, so many pixels wide. */
   void showPicture(const mrpt::img::CImage& picture, int width);
 
@@ -80,6 +83,7 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
 
  private:
   void drawAll() override;
+  void draw(NVGcontext* context) override;
   void arrangePanels();
   map_view::Ray rayThrough(const nanogui::Vector2i& p) const;
   void takePicture();
@@ -93,6 +97,7 @@ class ViewWindow : public mrpt::gui::CDisplayWindowGUI {
   };
   std::vector<Placed> m_panels;
   int m_opened = 0;
+  std::optional<Eigen::Vector3d> m_ring;
   std::function<void(const map_view::Ray&)> m_onClick;
   std::function<bool(const map_view::Ray&)> m_onGrab;
   OnMoved m_onMoved;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <new>
 #include <stdexcept>
 
 #include "Bytes.h"
@@ -23,11 +24,18 @@ std::size_t fine(std::size_t size) {
   return size;
 }
 
+/** What Zstandard made, unless there is no memory. */
+template <class T>
+T* made(T* thing) {
+  if (!thing) throw std::bad_alloc();
+  return thing;
+}
+
 }  // namespace
 
 std::string packed(const std::string& bytes, const ZSTD_CDict_s* dictionary) {
-  thread_local const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
-                                                                                  ZSTD_freeCCtx);
+  thread_local const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(
+      made(ZSTD_createCCtx()), ZSTD_freeCCtx);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_dictIDFlag, 0);
   ZSTD_CCtx_refCDict(context.get(), dictionary);
@@ -38,8 +46,8 @@ std::string packed(const std::string& bytes, const ZSTD_CDict_s* dictionary) {
 }
 
 std::string unpacked(const std::string& packed, std::size_t most, const ZSTD_DDict_s* dictionary) {
-  thread_local const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
-                                                                                  ZSTD_freeDCtx);
+  thread_local const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(
+      made(ZSTD_createDCtx()), ZSTD_freeDCtx);
   const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size > most) fail();
   std::string bytes(size, '\0');
@@ -145,7 +153,8 @@ void PartCoder::learn(const std::function<void(const VisitGroup&)>& forEachGroup
       ZDICT_trainFromBuffer(&m_dictionary[0], m_dictionary.size(), samples.data(), sizes.data(),
                             static_cast<unsigned>(sizes.size()));
   m_dictionary.resize(ZDICT_isError(size) ? 0 : size);
-  m_packing = {ZSTD_createCDict(m_dictionary.data(), m_dictionary.size(), kLevel), ZSTD_freeCDict};
+  m_packing = {made(ZSTD_createCDict(m_dictionary.data(), m_dictionary.size(), kLevel)),
+               ZSTD_freeCDict};
 }
 
 std::string PartCoder::plain(const std::vector<const TreePart*>& parts) const {
@@ -210,6 +219,7 @@ void PartCoder::fromText(const std::string& text) {
   }
   m_dictionary = reader.rest();
   m_unpacking = {ZSTD_createDDict(m_dictionary.data(), m_dictionary.size()), ZSTD_freeDDict};
+  if (!m_unpacking) fail();
 }
 
 }  // namespace semantic_octree

@@ -37,6 +37,15 @@ Ray OrbitCamera::rayThrough(int x, int y, int width, int height) const {
   return {position(), direction.normalized()};
 }
 
+std::optional<Eigen::Vector2d> OrbitCamera::pixelOf(const Eigen::Vector3d& place, int width,
+                                                    int height) const {
+  const Eigen::Vector3d to = place - position();
+  const double deep = to.dot(forward()), f = focalLength(height);
+  if (deep <= 0) return {};
+  return Eigen::Vector2d(width / 2.0 + f * to.dot(right()) / deep - 0.5,
+                         height / 2.0 - f * to.dot(up()) / deep - 0.5);
+}
+
 bool OrbitCamera::maySee(const Eigen::Vector3d& center, double radius, int width,
                          int height) const {
   const Eigen::Vector3d to = center - position();

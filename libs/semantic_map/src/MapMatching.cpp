@@ -37,39 +37,43 @@ const CPointsMap& pointsOf(const CMetricMap* map) {
 
 }  // namespace
 
-const mrpt::maps::CSimplePointsMap* CSemanticOctoMap::getAsSimplePointsMap() const {
+std::shared_ptr<const mrpt::maps::CSimplePointsMap> CSemanticOctoMap::centers() const {
   const std::lock_guard lock(m_centersMutex);
   const auto folder = reading();
   if (!m_changes) m_changes = const_cast<SemanticOcTree&>(m_tree).follow();
   const semantic_octree::TileChange change = m_changes->tiles();
-  if (m_centers && !change.all && change.tiles.empty()) return m_centers.get();
+  if (m_centers && !change.all && change.tiles.empty()) return m_centers;
   m_centers = std::make_shared<mrpt::maps::CSimplePointsMap>();
   m_centersFromAbove.reset();
   for (auto leaf = m_tree.begin_leafs(), end = m_tree.end_leafs(); leaf != end; ++leaf)
     if (m_tree.isNodeOccupied(*leaf)) addCenters(leaf, m_tree.getResolution(), *m_centers);
-  return m_centers.get();
+  return m_centers;
 }
 
-const mrpt::maps::CSimplePointsMap& CSemanticOctoMap::centersFromAbove() const {
-  const auto* centers = getAsSimplePointsMap();
+const mrpt::maps::CSimplePointsMap* CSemanticOctoMap::getAsSimplePointsMap() const {
+  return centers().get();
+}
+
+std::shared_ptr<const mrpt::maps::CSimplePointsMap> CSemanticOctoMap::centersFromAbove() const {
+  const auto points = centers();
   const std::lock_guard lock(m_centersMutex);
   if (!m_centersFromAbove)
-    m_centersFromAbove = std::make_shared<mrpt::maps::CSimplePointsMap>(*centers);
-  return *m_centersFromAbove;
+    m_centersFromAbove = std::make_shared<mrpt::maps::CSimplePointsMap>(*points);
+  return m_centersFromAbove;
 }
 
 void CSemanticOctoMap::determineMatching2D(const CMetricMap* other,
                                            const mrpt::poses::CPose2D& T_this_other,
                                            TMatchingPairList& pairs, const TMatchingParams& params,
                                            TMatchingExtraResults& extra) const {
-  centersFromAbove().determineMatching2D(&pointsOf(other), T_this_other, pairs, params, extra);
+  centersFromAbove()->determineMatching2D(&pointsOf(other), T_this_other, pairs, params, extra);
 }
 
 void CSemanticOctoMap::determineMatching3D(const CMetricMap* other,
                                            const mrpt::poses::CPose3D& T_this_other,
                                            TMatchingPairList& pairs, const TMatchingParams& params,
                                            TMatchingExtraResults& extra) const {
-  getAsSimplePointsMap()->determineMatching3D(&pointsOf(other), T_this_other, pairs, params, extra);
+  centers()->determineMatching3D(&pointsOf(other), T_this_other, pairs, params, extra);
 }
 
 float CSemanticOctoMap::compute3DMatchingRatio(
@@ -84,9 +88,9 @@ float CSemanticOctoMap::compute3DMatchingRatio(
 }
 
 float CSemanticOctoMap::squareDistanceToClosestCorrespondence(float x, float y) const {
-  const mrpt::maps::CSimplePointsMap& centers = centersFromAbove();
-  if (centers.empty()) throw std::logic_error("the map has no occupied voxel");
-  return centers.squareDistanceToClosestCorrespondence(x, y);
+  const auto points = centersFromAbove();
+  if (points->empty()) throw std::logic_error("the map has no occupied voxel");
+  return points->squareDistanceToClosestCorrespondence(x, y);
 }
 
 }  // namespace semantic_map

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -48,6 +50,57 @@ auto naming(const fs::path& target, const F& f) try {
   throw std::runtime_error(target.string() + ": cannot be written: " + e.what());
 }
 
+/** The new files of this process, while Unfinished is held. They are never destroyed, for some
+ * outputs live as long. */
+std::set<fs::path>& newFiles() {
+  static auto* const theOnes = new std::set<fs::path>;
+  return *theOnes;
+}
+
+fs::path keyOf(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
+
+/** A file on its way to its name. What can fail for want of memory is done when it is made. */
+class Move {
+ public:
+  /** \param from if it is not there, what has its name is removed, unless it was to be new */
+  Move(fs::path from, fs::path to)
+      : m_from(std::move(from)), m_to(std::move(to)), m_key(keyOf(m_to)) {
+    const auto held = Unfinished::hold();
+    m_isNew = newFiles().count(m_key) > 0;
+  }
+  const fs::path& to() const { return m_to; }
+  /** False if the file was to be new, and something is there. */
+  bool isFree() const {
+    return !m_isNew || !fs::exists(m_from) || !fs::exists(fs::symlink_status(m_to));
+  }
+  /** \return isFree(): otherwise it is not done. Unfinished is held. */
+  bool take() const {
+    if (!isFree()) return false;
+    if (!fs::exists(m_from)) {
+      if (!m_isNew) fs::remove(m_to);
+      return true;
+    }
+    const char *const from = m_from.c_str(), *const to = m_to.c_str();
+    const bool isDone = m_isNew && renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0;
+    if (m_isNew && !isDone && errno == EEXIST) return false;
+    if (!isDone) fs::rename(m_from, m_to);  // not all file systems can: then isFree() has told
+    newFiles().erase(m_key);
+    return true;
+  }
+
+ private:
+  fs::path m_from, m_to, m_key;
+  bool m_isNew = false;
+};
+
+/** Leaves it there for the user, and says where. */
+[[noreturn]] void keep(const fs::path& target, Unfinished& unfinished) {
+  throw std::runtime_error(target.string() +
+                           ": cannot be written: somebody else has written it since this program "
+                           "began; what belongs there is now " +
+                           unfinished.keep().string());
+}
+
 /** As the file has that is replaced. */
 void takePermissions(const fs::path& target, int descriptor) {
   struct stat old {};
@@ -73,13 +126,14 @@ StagedFile::~StagedFile() = default;
 const fs::path& StagedFile::path() const { return m_unfinished->path(); }
 
 void StagedFile::commit(Disk when) {
-  naming(m_target, [&] {
-    const Descriptor folder = openToSync(m_target.parent_path());  // what can fail comes first
+  const Move move = naming(m_target, [&] { return Move(path(), m_target); });
+  const Descriptor folder = naming(m_target, [&] {  // what can fail comes first
     if (when == Disk::Now) synchronize(m_unfinished->descriptor());
-    const auto held = Unfinished::hold();
-    fs::rename(path(), m_target);
-    if (when == Disk::Now) synchronize(folder);
+    return openToSync(m_target.parent_path());
   });
+  const auto held = Unfinished::hold();
+  if (!naming(m_target, [&] { return move.take(); })) keep(m_target, *m_unfinished);
+  if (when == Disk::Now) naming(m_target, [&] { synchronize(folder); });
 }
 
 OutputFolder::OutputFolder(fs::path folder) : m_folder(std::move(folder)) {
@@ -98,22 +152,25 @@ fs::path OutputFolder::staged(const std::string& name) const { return m_staging-
 void OutputFolder::takeAlong(const std::string& lock) { m_staging->takeAlong(lock); }
 
 void OutputFolder::commit(const std::vector<std::string>& names) {
-  std::vector<std::pair<fs::path, fs::path>> moves;  // what can fail comes first
-  for (const std::string& name : names) {
-    const auto& [from, to] = moves.emplace_back(staged(name), m_folder / name);
-    naming(to, [&from = from, &to = to] {
-      checkPlace(to);
-      if (fs::exists(from)) synchronize(openToSync(from));
+  std::vector<Move> moves;  // what can fail comes first
+  for (const std::string& name : names)
+    naming(m_folder / name, [&] {
+      checkPlace(m_folder / name);
+      moves.emplace_back(staged(name), m_folder / name);
+      if (fs::exists(staged(name))) synchronize(openToSync(staged(name)));
     });
-  }
   const Descriptor folder = naming(m_folder, [&] { return openToSync(m_folder); });
   flock(folder, LOCK_EX);  // of two at the same time, the files are of one
   const auto held = Unfinished::hold();
-  for (const auto& [from, to] : moves)
-    naming(to, [&from = from, &to = to] {
-      fs::exists(from) ? fs::rename(from, to) : void(fs::remove(to));
-    });
+  for (const auto step : {&Move::isFree, &Move::take})
+    for (const Move& move : moves)
+      if (!naming(move.to(), [&] { return (move.*step)(); })) keep(move.to(), *m_staging);
   naming(m_folder, [&] { synchronize(folder); });
+}
+
+void declareNew(const fs::path& file) {
+  const auto held = Unfinished::hold();
+  newFiles().insert(keyOf(file));
 }
 
 namespace {

@@ -99,6 +99,14 @@ Unfinished::~Unfinished() {
   discard();
 }
 
+fs::path Unfinished::keep() {
+  const std::string name = "kept-" + m_path.filename().string().substr(kPrefix.size());
+  const fs::path kept = m_path.parent_path() / name;
+  fs::rename(m_path, kept);
+  m_path.clear();
+  return kept;
+}
+
 std::unique_lock<std::mutex> Unfinished::hold() { return std::unique_lock(registry().mutex); }
 
 /** False if the name is taken, or another process took the folder for one of the dead. */

@@ -28,6 +28,9 @@ class Unfinished {
   /** A file beside it, a lock, goes with it if nothing else is left in the folder. */
   void takeAlong(const std::string& name) { m_companion = m_folder / name; }
 
+  /** Gives it a name that stays, for the user: "kept-..." \return its path */
+  std::filesystem::path keep();
+
   /** As long as this is held, leaveWithoutOutputs() waits. */
   static std::unique_lock<std::mutex> hold();
 

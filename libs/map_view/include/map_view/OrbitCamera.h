@@ -28,6 +28,8 @@ struct OrbitCamera {
   double focalLength(int height) const;
   /** Through the middle of a pixel; (0, 0) is the upper left one. */
   Ray rayThrough(int x, int y, int width, int height) const;
+  /** Where a place (m, map frame) is seen, its inverse; none: behind the camera. */
+  std::optional<Eigen::Vector2d> pixelOf(const Eigen::Vector3d& place, int width, int height) const;
   /** Whether a ball may be seen in a picture of this size. */
   bool maySee(const Eigen::Vector3d& center, double radius, int width, int height) const;
 

@@ -227,9 +227,11 @@ class CSemanticOctoMap : public mrpt::maps::CMetricMap,
   void draw(const semantic_octree::SemanticOcTree& tree,
             mrpt_compat::drawing::CSetOfObjects& o) const;
   void copyAllButTree(const CSemanticOctoMap& o);
-  /** The centers of voxels, for questions in the plane: a points map of MRPT's that was asked one
-   * in space answers none of these, and the other way round. */
-  const mrpt::maps::CSimplePointsMap& centersFromAbove() const;
+  /** The centers of occupied voxels, which another thread may replace meanwhile. */
+  std::shared_ptr<const mrpt::maps::CSimplePointsMap> centers() const;
+  /** For questions in the plane: a points map of MRPT's that was asked one in space answers none of
+   * these, and the other way round. */
+  std::shared_ptr<const mrpt::maps::CSimplePointsMap> centersFromAbove() const;
   labeled_cloud::ScanConverter& converter();
   std::shared_ptr<const labeled_cloud::LabeledScan> scanForLikelihood(
       const mrpt::obs::CObservation& observation) const;

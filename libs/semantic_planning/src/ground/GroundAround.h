@@ -1,6 +1,6 @@
 #pragma once
-#include <mrpt/math/TPose2D.h>
 #include <semantic_planning/ground/Ground.h>
+#include <semantic_planning/vehicle/PathPoint.h>
 
 #include <optional>
 #include <vector>

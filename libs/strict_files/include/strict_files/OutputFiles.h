@@ -29,7 +29,8 @@ class StagedFile {
   /** Where to write: an empty file in the target's folder, with a name that nothing else has and
    * that ends like the target's. Writers fill this file, they do not replace it. */
   const std::filesystem::path& path() const;
-  /** Gives the closed file its name. \throw std::runtime_error naming the target. */
+  /** Gives the closed file its name. \throw std::runtime_error naming the target; if it was to be
+   * new (declareNew()) and is there, what was written is kept under another name, which is said. */
   void commit() { commit(Disk::Now); }
   /** Later: it takes its name at once, for what OutputFolder has on the disk before it counts. */
   enum class Disk { Now, Later };
@@ -60,8 +61,9 @@ class OutputFolder {
   void takeAlong(const std::string& lock);
   /** Puts these files in place, in this order; may be called again with others. One that was not
    * written removes its predecessor, so that files of different maps are never side by side. \throw
-   * std::runtime_error naming the file. It cannot be written, or something that is no regular file
-   * has its place. */
+   * std::runtime_error naming the file. It cannot be written, something that is no regular file has
+   * its place, or it is there although it was to be new (declareNew()). Then the files that have no
+   * place are kept in a folder beside them, which is said. */
   void commit(const std::vector<std::string>& names);
 
  private:
@@ -92,6 +94,10 @@ class ScratchFile {
   std::unique_ptr<Unfinished> m_file;
   std::uint64_t m_end = 0;
 };
+
+/** Says that a file is to be new: what others put there from now on is not replaced by this process
+ * (StagedFile, OutputFolder). Its own is, once it has its place. */
+void declareNew(const std::filesystem::path& file);
 
 /** Ends the process at once, as _exit() does, after it removed all files and folders that it began
  * (StagedFile, OutputFolder) and that have not taken their place. For programs that are told to
