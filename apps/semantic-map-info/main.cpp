@@ -64,11 +64,11 @@ ordered_json classesJson(const SemanticOcTree& map, const MapContents& contents)
   return classes;
 }
 
-ordered_json folderJson(const semantic_octree::MapFolder::Contents& folder) {
-  return {{"tiles", folder.tiles},
-          {"tileSize", folder.tileSize},
-          {"generation", folder.generation},
-          {"bytes", folder.bytesOnDisk}};
+ordered_json folderJson(const semantic_octree::MapFolder::Contents& folder,
+                        const semantic_octree::MapFolder::Others& others) {
+  return {{"tiles", folder.tiles},           {"tileSize", folder.tileSize},
+          {"generation", folder.generation}, {"bytes", folder.bytesOnDisk},
+          {"otherFiles", others.files},      {"otherBytes", others.bytes}};
 }
 
 void printBox(const ordered_json& box, std::ostream& out) {
@@ -86,6 +86,10 @@ void printFolder(const ordered_json& folder, std::ostream& out) {
   out << "\n  folder        " << folder["tiles"] << " tiles of " << folder["tileSize"] << " m, "
       << strict_files::sizeText(folder["bytes"]) << ", saved " << folder["generation"]
       << (folder["generation"] == 1 ? " time" : " times");
+  if (folder["otherFiles"] > 0)
+    out << "\n  not of it     " << folder["otherFiles"] << " files, "
+        << strict_files::sizeText(folder["otherBytes"])
+        << ", that index.yaml does not name: of a process that writes, was killed, or others";
 }
 
 void printTime(const ordered_json& d, std::ostream& out) {
@@ -100,8 +104,8 @@ void printTime(const ordered_json& d, std::ostream& out) {
   say("free space", d["freeSpace"]);
 }
 
-/** All there is to say about a map but its voxels. */
-ordered_json describe(semantic_octree::StoredMap& stored) {
+/** All there is to say about a map but its voxels. \param path where it is */
+ordered_json describe(semantic_octree::StoredMap& stored, const std::filesystem::path& path) {
   const SemanticOcTree& map = stored.tree();
   const MapContents contents = contentsOf(map);
   ordered_json description = {{"resolution", map.getResolution()},
@@ -120,7 +124,9 @@ ordered_json describe(semantic_octree::StoredMap& stored) {
     description["freeSpace"] = ordered_json::object();
     addHalfLife(map, semantic_types::kNoClass, description["freeSpace"]);
   }
-  if (stored.folder()) description["folder"] = folderJson(stored.folder()->contents());
+  if (stored.folder())
+    description["folder"] =
+        folderJson(stored.folder()->contents(), semantic_octree::MapFolder::othersAt(path));
   return description;
 }
 
@@ -244,7 +250,7 @@ int run(const Cli& cli) {
     std::optional<inputs::TileProgress> progress;
     if (!cli.json) progress.emplace(std::vector{map.get()}, "Reading");
     if (map->folder()) checkTiles(*map->folder());
-    return describe(*map);
+    return describe(*map, cli.map);
   }();
   if (cli.json)
     std::cout << textOf(description);

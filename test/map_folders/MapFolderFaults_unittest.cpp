@@ -330,6 +330,8 @@ TEST_F(FolderIndex, isWhatTellsOldFilesFromThoseOfOthers) {
   EXPECT_FALSE(fs::exists(map / "leaves.1.semantic"));
   EXPECT_FALSE(fs::exists(map / "leaves.2.semantic"));
   for (const char* name : others) EXPECT_EQ(contentOf(map / name), "somebody's");
+  EXPECT_EQ(MapFolder::othersAt(map).files, 3u);
+  EXPECT_EQ(MapFolder::othersAt(map).bytes, 30u);
 }
 
 TEST_F(FolderIndex, isLeftAloneWhenADiskIsFullOrAProcessToldToLeave) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 
@@ -166,8 +167,8 @@ void MapFolder::Tiles::takeContents() {
   if (emptyLike(leaves) != emptyLike(m_map))
     throw std::runtime_error(m_folder.string() +
                              ": its map has another resolution, other classes or parameters");
-  MapAccess::setStore(m_map, MapAccess::store(leaves).copy(store().stateBytes(),
-                                                           NodeStore::Tiles::StayAway));
+  MapAccess::setStore(
+      m_map, MapAccess::store(leaves).copy(store().stateBytes(), NodeStore::Tiles::StayAway));
   addFromIndex();
   if (m_access != Access::Write) return;
   for (const std::string& name : m_index.files())
@@ -288,6 +289,21 @@ StoredMap::StoredMap(SemanticOcTree empty, const fs::path& folder, const MapFold
 bool MapFolder::isAt(const fs::path& folder) {
   std::error_code ignored;
   return fs::is_regular_file(folder / MapFolder::kIndexFile, ignored);
+}
+
+MapFolder::Others MapFolder::othersAt(const fs::path& folder) {
+  const FileLock lock(folder / TileIndex::kReadersLock, FileLock::Kind::Shared);
+  const TileIndex index = readIndex(folder);
+  std::set<std::string> names = index.files();
+  names.insert(index.old.begin(), index.old.end());
+  names.insert({kIndexFile, TileIndex::kWriterLock, TileIndex::kReadersLock});
+  Others others;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || names.count(entry.path().filename().string())) continue;
+    ++others.files;
+    others.bytes += entry.file_size();
+  }
+  return others;
 }
 
 SemanticOcTree loadMap(const fs::path& path) {

@@ -70,6 +70,14 @@ class MapFolder {
   static constexpr const char* kIndexFile = "index.yaml";
   /** Whether a map was saved there. */
   static bool isAt(const std::filesystem::path& folder);
+  /** Files that no save of a folder names: put there, or left by a process that was killed. Who
+   * writes next removes only what such a process had not begun to save. */
+  struct Others {
+    std::size_t files = 0;
+    std::uint64_t bytes = 0;
+  };
+  /** \throw std::runtime_error as loadTree() */
+  static Others othersAt(const std::filesystem::path& folder);
   /** An empty map like that of a folder. \throw std::runtime_error as loadTree() */
   static SemanticOcTree emptyMap(const std::filesystem::path& folder);
 
