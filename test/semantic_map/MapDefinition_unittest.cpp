@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/maps/CMultiMetricMap.h>
+#include <mrpt_compat/Release.h>
 
 #include "SmallMaps.h"
 #include "TemporaryFolder.h"
@@ -80,6 +81,28 @@ TEST(MapDefinition, anUnknownKeyOrSectionIsNamedWithTheNearestKnownOne) {
   expectRefused("renderOpts", "decimation = 3", {"_renderOpts", "'decimation'"});
   expectRefused("insertionOpts", "max_range = 3",
                 {"Maps_semanticOctoMap_00_insertionOpts", "unknown section", "insertOpts"});
+}
+
+TEST(MapDefinition, whatMrptLeavesOutInSilenceIsNamed) {
+  const auto refusal = [](const std::string& lines) {
+    return errorOf([&] { mapOf("[Maps]\nsemanticOctoMap_count = 1\n" + lines); });
+  };
+  const std::string unknown = refusal("pointMap_count = 1\n");
+  EXPECT_TRUE(contains(unknown, "pointMap_count: there is no map type"));
+  EXPECT_EQ(refusal("pointsMap_count = 1\nother = 3\n"), "");
+  // MRPT itself refuses even none of what it does not know, since 2.11.3.
+  EXPECT_EQ(refusal("pointMap_count = 0\n").empty(), !MSO_MRPT_AT_LEAST(2, 11, 3));
+  const std::string beyond = refusal("[Maps_semanticOctoMap_01_insertOpts]\nmax_range = 3\n");
+  EXPECT_TRUE(contains(beyond, "Maps_semanticOctoMap_01_insertOpts") && contains(beyond, "is 1"))
+      << beyond;
+  EXPECT_TRUE(contains(refusal("[Maps_semanticOctoMap_0_insertOpts]\n"), "begin at 00"));
+  EXPECT_EQ(refusal("[Maps_pointsMap_07_insertOpts]\n[Other_semanticOctoMap_05_insertOpts]\n"), "");
+  EXPECT_TRUE(contains(errorOf([] {
+                         mapOf(
+                             "[Maps]\nsemantic_map::CSemanticOctoMap_count = 1\n"
+                             "[Maps_semantic_map::CSemanticOctoMap_1_insertOpts]\n");
+                       }),
+                       "begin at 00"));
 }
 
 TEST(MapDefinition, aBadValueIsNamedWithWhatWasExpected) {

@@ -4,6 +4,8 @@
 #include <semantic_map/CSemanticOctoMap.h>
 #include <semantic_types/ClassTable.h>
 
+#include <fstream>
+
 #include "StockApps.h"
 
 namespace {
@@ -44,6 +46,18 @@ TEST_F(IcpSlam, withoutThePluginThereIsNoSuchMapWhichOnlyNewerReleasesSay) {
   EXPECT_FALSE(mapIn("icp-slam-output"));
   EXPECT_NE(std::filesystem::exists(folder / "icp-slam-output/_finalmap_.simplemap"),
             kMrptRefusesUnknownMaps);
+}
+
+TEST_F(IcpSlam, whatMrptWouldLeaveOutInSilenceStopsItWithTheReason) {
+  for (const std::string section : {"00_insertionOpts", "7_insertOpts"}) {
+    std::filesystem::copy_file(folder / "config/stock-apps/icp-slam.ini", folder / "icp-slam.ini",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::ofstream(folder / "icp-slam.ini", std::ios::app)
+        << "\n[MappingApplication_semanticOctoMap_" << section << "]\n";
+    const ProgramRun slammed = slam("icp-slam.ini", Plugin::Preloaded);
+    EXPECT_NE(slammed.status, 0) << section;
+    EXPECT_TRUE(contains(slammed.output, section)) << slammed.output;
+  }
 }
 
 class RbpfSlam : public StockApps {
